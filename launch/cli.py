@@ -3,6 +3,7 @@
 Heavy imports happen inside the commands, so that ``uvf --help`` is quick.
 """
 
+import os
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -10,17 +11,18 @@ from typing import Annotated
 import typer
 
 from launch import settings
+from launch.commands.log import KeyArgument, LogArgument, log_app
 from launch.commands.map import map_app
 from launch.commands.sim import sim_app
 from launch.commands.slam import slam
 from launch.commands.vehicle import vehicle_app
 from launch.commands.world import world_app
+from launch.help import without_types_of_flags
 from launch.refusal import bad_input_is_one_line, counted, usage_is_one_line, within
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, help=(__doc__ or "").splitlines()[0])
 topic_app = typer.Typer(no_args_is_help=True, help="Look at messages.")
 node_app = typer.Typer(no_args_is_help=True, help="Look at running services.")
-log_app = typer.Typer(no_args_is_help=True, help="Look at recorded runs.")
 app.add_typer(topic_app, name="topic")
 app.add_typer(node_app, name="node")
 app.add_typer(log_app, name="log")
@@ -39,12 +41,6 @@ def known_mission(name: str | None) -> str | None:
     return name
 
 
-def known_log(path: Path) -> Path:
-    """Resolves the path of a log or exits with one line."""
-    with bad_input_is_one_line():
-        return settings.log_path(path)
-
-
 def known_run(path: Path | None) -> Path | None:
     """Resolves the folder of a run or a log, if one is given, or exits with one line."""
     with bad_input_is_one_line():
@@ -61,12 +57,13 @@ def known_benchmarks(names: list[str]) -> list[str]:
 DEMO = "demo"
 AS_TODAY = "With these files instead of those attached to the log."
 RUN = "Folder of a run, or a log; by default the latest run."
-BENCHMARKS = "Groups (bus, sim, ...), each followed by the cases wanted of it."
+BENCHMARKS = f"Groups, each followed by the cases wanted of it: {', '.join(settings.benchmark_names())}."
 RATE = "Simulation seconds per second, at most 1000; 0 = as fast as it goes."
 MISSION = "Name in missions/ or path of a mission file."
 MissionArgument = Annotated[str, typer.Argument(help=MISSION, callback=known_mission)]
+RUNNING = "By default that of the running system."
+RunningMissionOption = Annotated[str | None, typer.Option("--mission", "-m", help=RUNNING, callback=known_mission)]
 MissionOption = Annotated[str, typer.Option("--mission", "-m", help=MISSION, callback=known_mission)]
-LogArgument = Annotated[Path, typer.Argument(help="An MCAP log.", callback=known_log)]
 
 BRIDGE_ADDRESS = """udpin:HOST:PORT: listen for autopilots that send there, as simulators do to 14550.
 
@@ -91,6 +88,7 @@ def up(
     from launch.runs import new_run
     from launch.up import StartOptions
     from launch.up import up as run_up
+    from services.autopilot.mavlink.connection.targets import where_mavlink_goes
     from uvf.runtime.bus.address import address_from, claim, claim_router, router_from
 
     with bad_input_is_one_line():
@@ -100,8 +98,8 @@ def up(
             claim(address_from())
         folder = new_run()
         say(f"mission {path.stem}; logs in {folder}")
-        if gcs:
-            say(f"page {address_from().url}   QGroundControl: just start it (MAVLink goes to UDP 14550)   Ctrl-C ends")
+        page = f"page {address_from().url}   " if gcs else ""
+        say(f"{page}{where_mavlink_goes(os.environ)}   Ctrl-C ends")
         raise typer.Exit(run_up(StartOptions(mission, rate, gcs, seconds), folder, say))
 
 
@@ -202,7 +200,7 @@ def report(
 @app.command()
 def teleop(
     vehicles: Annotated[list[str] | None, typer.Argument(help="Ground vehicles, driven together, or one aircraft.")] = None,
-    mission: MissionOption = DEMO,
+    mission: RunningMissionOption = None,
 ) -> None:
     """Drive ground vehicles, or fly an aircraft by its surfaces, from this terminal's keyboard or with a gamepad."""
     from launch.teleop.command import teleop as run_teleop
@@ -216,7 +214,7 @@ def flightgear(
     vehicle: Annotated[str, typer.Argument(help="An aircraft of the mission.")],
     to: Annotated[str, typer.Option(help="HOST:PORT where FlightGear listens.")] = "127.0.0.1:5550",
     hz: Annotated[float, typer.Option(callback=within(1.0, 100.0), help="Packets a second, 1 to 100.")] = 30.0,
-    mission: MissionOption = DEMO,
+    mission: RunningMissionOption = None,
 ) -> None:
     """Show an aircraft in FlightGear (native FDM packets over UDP), until Ctrl-C."""
     from launch.flightgear.flightgear import flightgear as run_flightgear
@@ -310,7 +308,7 @@ def topic_list(live: Annotated[bool, typer.Option(help="Only what is on the bus 
 
 @topic_app.command("echo")
 def topic_echo(
-    key: Annotated[str, typer.Argument(help="As burger/nav/pose; * stands for one part.")],
+    key: KeyArgument,
     count: Annotated[int, typer.Option("-n", min=0, help="Stop after so many.")] = 0,
 ) -> None:
     """Print messages as they come."""
@@ -321,7 +319,9 @@ def topic_echo(
 
 
 @topic_app.command("hz")
-def topic_hz(key: str, seconds: Annotated[float, typer.Option("--for", callback=within(0.01), help="How long to count.")] = 5.0) -> None:
+def topic_hz(
+    key: KeyArgument, seconds: Annotated[float, typer.Option("--for", callback=within(0.01), help="How long to count.")] = 5.0
+) -> None:
     """Measure rates, by wall and by simulation time."""
     from launch.commands.topic import rates
 
@@ -330,7 +330,7 @@ def topic_hz(key: str, seconds: Annotated[float, typer.Option("--for", callback=
 
 
 @topic_app.command("info")
-def topic_info(key: str) -> None:
+def topic_info(key: KeyArgument) -> None:
     """Type, rate, QoS, writers and readers of a topic."""
     from launch.commands.topic import info
 
@@ -356,28 +356,10 @@ def node_graph() -> None:
         graph()
 
 
-@log_app.command("info")
-def log_info(log: LogArgument) -> None:
-    """Topics, counts, length, gaps and hash of a log."""
-    from launch.commands.report import describe_log
-
-    with bad_input_is_one_line():
-        describe_log(log)
-
-
-@log_app.command("recover")
-def log_recover(log: LogArgument, out: Annotated[Path | None, typer.Option(help="By default <log>-recovered.mcap.")] = None) -> None:
-    """Save what can be saved of a log that was cut off."""
-    from launch.commands.report import recover_log
-
-    with bad_input_is_one_line():
-        recover_log(log, out)
-
-
 def main() -> None:
     """Runs the command line and exits with its code."""
     with usage_is_one_line():
-        sys.exit(app(prog_name="uvf", standalone_mode=False))
+        sys.exit(without_types_of_flags(typer.main.get_command(app))(prog_name="uvf", standalone_mode=False))
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ from contextlib import closing
 from typing import Any
 
 from launch import catalogue, settings
+from launch.running_mission import announce
 from launch.worker import Worker, freeze_gc, lower_priority, worker
 from schemas import topics
 from schemas.messages import Clock, ClockRequest, Done, Event, Reply
@@ -77,6 +78,7 @@ def run_conductor(mission: str, rate: float, lockstep: bool = False, without: tu
         conductor = Conductor(simulators, [k.name for k in kinds if not k.simulator], rate, lockstep, site.members)
         with open_bus(life, lockstep) as bus:
             loop = ConductorLoop(conductor, bus, life)
+            announce(bus, mission)
             freeze_gc()
             loop.run()
 

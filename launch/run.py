@@ -8,6 +8,7 @@ from pathlib import Path
 from launch import catalogue
 from launch.checks import refuse_problems
 from launch.recorder import attachments
+from launch.scoring.last_words import LastWords
 from launch.scoring.scores import Scorer, Verdict
 from uvf.models.scenario import Scenario
 from uvf.runtime.log.recording import Recorder
@@ -26,6 +27,8 @@ class Result:
     recording_error: str
     failures: list[str]
     """Instances that have failed: what was measured of them says nothing."""
+    told: LastWords
+    """What the vehicles said of themselves."""
 
     @property
     def factor(self) -> float:
@@ -46,7 +49,7 @@ def run_lockstep(
     warn: Callable[[str], None] = lambda line: None,
 ) -> Result:
     """Runs every sim-clock service of the mission up to ``until`` [s] and records it. Raises BadInput."""
-    scorer = Scorer(site)
+    scorer, told = Scorer(site), LastWords()
     hosts = catalogue.hosts(site, [k for k in catalogue.needed(site) if k.clock == "sim"])
     refuse_problems(site, hosts)
     with Recorder(log, attachments(site)) as recorder:
@@ -54,9 +57,10 @@ def run_lockstep(
         try:
             recorder.follow(lockstep.bus)
             scorer.follow(lockstep.bus)
+            told.follow(lockstep.bus)
             begun = time.perf_counter()
             lockstep.run(until, watch)
             wall = time.perf_counter() - begun
         finally:
             lockstep.close()
-    return Result(scorer.judge(), recorder.hash.hexdigest(), until, wall, recorder.written, recorder.error, lockstep.failures())
+    return Result(scorer.judge(), recorder.hash.hexdigest(), until, wall, recorder.written, recorder.error, lockstep.failures(), told)

@@ -59,6 +59,14 @@ def benchmark_modules() -> dict[str, str]:
     return load_yaml(path, dict[str, str]) if path.is_file() else {}
 
 
+def benchmark_names() -> list[str]:
+    """The names of the groups, for help texts: none of a file that is broken."""
+    try:
+        return sorted(benchmark_modules())
+    except BadInput:
+        return []
+
+
 def benchmark_group(name: str) -> str:
     """The name of a group that is there. Raises BadInput."""
     groups = benchmark_modules()

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from launch.refusal import bad_input_is_one_line
+from launch.settings import runs_folder
 
 map_app = typer.Typer(no_args_is_help=True, help="Maps: save, load, merge, compare.")
 
@@ -22,7 +23,7 @@ def map_save(
     session: Annotated[bool, typer.Option("--session", help="Also NAME.npz: to merge, to be localized on, to go on with.")] = False,
 ) -> None:
     """Write the map of a running vehicle as picture and yaml, as map_saver does."""
-    from launch.maps.running import drawn_map, running_session
+    from launch.maps.running import doubt, drawn_map, running_session
     from uvf.models.world.map_file import check_mode, save_map
     from uvf.runtime.state.saved_maps import map_path
 
@@ -31,6 +32,8 @@ def map_save(
         owner, grid = drawn_map(vehicle, own_frame)
         yaml = save_map(grid, map_path(name), mode)
         typer.echo(f"uvf: map of {owner}: {yaml}")
+        if warning := doubt(grid, mode):
+            typer.echo(f"uvf: {warning}", err=True)
         if session:
             running_session(owner).save(yaml.with_suffix(".npz"))
             typer.echo(f"uvf: session of {owner}, in its own map frame: {yaml.with_suffix('.npz')}")
@@ -60,7 +63,7 @@ def map_load(
 def map_merge(
     sessions: Annotated[list[str], typer.Argument(help="Files (.npz) of 'uvf slam', or names given to 'uvf map save --session'.")],
     out: Annotated[str, typer.Option(help="A saved map's name, or a file: map, session (.npz) and picture (.png) are written.")] = "merged",
-    resolution: Annotated[float, typer.Option(min=0.01, max=1.0, help="Side of the map's cells, m.")] = 0.05,
+    resolution: Annotated[float, typer.Option(min=0.01, max=1.0, metavar="m", help="Side of the map's cells.")] = 0.05,
 ) -> None:
     """Put the maps of several vehicles, or of several days, together, wherever each of them began; 1 when nothing fits."""
     from launch.maps.merging import merge_files
@@ -81,14 +84,14 @@ def map_compare(
     shift: Annotated[
         tuple[float, float, float],
         typer.Option(
-            help="Pose of the first map in the other's frame: x [m], y [m], yaw [degrees]; three numbers, as --shift 1.5 -0.2 90."
+            metavar="X Y YAW", help="Pose of the first map in the other's frame: x and y in m, yaw in degrees, as --shift 1.5 -0.2 90."
         ),
     ] = (
         0.0,
         0.0,
         0.0,
     ),
-    out: Annotated[Path, typer.Option(help="Picture of the differences.")] = Path("compare.png"),
+    out: Annotated[Path | None, typer.Option(help="Picture of the differences; by default runs/compare.png.")] = None,
 ) -> None:
     """Compare two maps, or a map with a world: figures, and a picture of the differences."""
     from launch.maps.report import compared, scored
@@ -98,8 +101,8 @@ def map_compare(
     with bad_input_is_one_line():
         if (b is None) == (world is None):
             raise BadInput("'uvf map compare' needs one thing to compare with: another map, or --world NAME")
-        first = find_map(a)
-        lines = compared(first, find_map(b), shift, out) if b is not None else scored(first, str(world), shift, out)
+        first, picture = find_map(a), out or runs_folder() / "compare.png"
+        lines = compared(first, find_map(b), shift, picture) if b is not None else scored(first, str(world), shift, picture)
         for line in lines:
             typer.echo(line)
-        typer.echo(f"uvf: {out}: white and black the same, red only in {a}, blue only in {b or world}")
+        typer.echo(f"uvf: {picture}: white and black the same, red only in {a}, blue only in {b or world}")

@@ -24,6 +24,7 @@ from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.log.reading import log_begin, log_metadata, read_log
 from uvf.runtime.log.recovery import recover
 from uvf.runtime.log.replay import into_service, logged_site, onto_bus
+from uvf.runtime.messages.validation import escaped
 
 SHOWN = 20
 console = Console()
@@ -67,6 +68,9 @@ def _print_result(result: Result, log: Path) -> None:
         table.add_row(*row, "passed" if verdict.passed else "FAILED")
     if result.verdicts:
         console.print(table)
+    for vehicle in dict.fromkeys(verdict.criterion.vehicle for verdict in result.verdicts if not verdict.passed):
+        for line in result.told.of(vehicle):
+            typer.echo(escaped(line))
     typer.echo(f"simulated {result.simulated:g} s in {result.wall:.1f} s: {result.factor:.1f} x real time")
     typer.echo(f"log {log}: {result.messages} messages, hash {result.log_hash}")
     for failure in result.failures:
@@ -100,7 +104,7 @@ def replay_into(log: Path, service: str, vehicle: str | None, mission: str | Non
             if count <= SHOWN:
                 typer.echo(str(difference))
     what = ", ".join(f"{h.service.name} of {h.vehicle or 'all vehicles'}" for h in hosts)
-    typer.echo(f"{what}: {count} differences" if count else f"{what}: puts out the same")
+    typer.echo(f"{what}: {count} differences" if count else f"{what}: output is identical")
     return 1 if count else 0
 
 

@@ -17,7 +17,7 @@ def slam(
     out: Annotated[Path | None, typer.Option(help="Folder of the results; by default runs/slam/LOG-METHOD.")] = None,
     vehicle: Annotated[str | None, typer.Option(help="Of a run with several.")] = None,
     relations: Annotated[Path | None, typer.Option(help="Score by this file instead of those beside the log.")] = None,
-    resolution: Annotated[float, typer.Option(min=0.01, max=1.0, help="Side of the map's cells, m.")] = 0.05,
+    resolution: Annotated[float, typer.Option(min=0.01, max=1.0, metavar="m", help="Side of the map's cells.")] = 0.05,
 ) -> None:
     """Map a recorded log: trajectory, map and report in a folder; scored by what lies beside the log."""
     from launch.slam.command import SlamJob, run_job

@@ -31,13 +31,14 @@ def list_table() -> None:
         typer.echo(f"{request.key:{width}}  {types:26}  {'request':19}  {request.about}")
 
 
-def _full(key: str) -> str:
+def full_key(key: str) -> str:
+    """The key as it is on the bus, with the prefix that people leave out."""
     return key if key.startswith(f"{PREFIX}/") else f"{PREFIX}/{key}"
 
 
 def _listen(key: str, heard: Callable[[Sample], None], go_on: Callable[[], bool]) -> None:
     with ZenohBus(router_from(), timeout=3.0) as bus:
-        bus.subscribe_all(lambda sample: heard(sample) if matches(_full(key), sample.key) else None, depth=DEPTH)
+        bus.subscribe_all(lambda sample: heard(sample) if matches(full_key(key), sample.key) else None, depth=DEPTH)
         try:
             while go_on():
                 time.sleep(LOOK)
@@ -58,7 +59,7 @@ def list_live() -> None:
 def echo(key: str, count: int) -> None:
     """Prints messages; ``count`` 0 = until Ctrl-C."""
     left = [count or -1]
-    if topic_of(_full(key)) is None and "srv/" not in key and "**" not in key:
+    if topic_of(full_key(key)) is None and "srv/" not in key and "**" not in key:
         known = [t.key.replace("<owner>", key.partition("/")[0]) for t in TOPICS.values()]
         raise BadInput(f"no topic '{key}' in the table; {nearest(key, known)}")
 
@@ -66,13 +67,17 @@ def echo(key: str, count: int) -> None:
         if left[0] == 0:
             return
         left[0] -= 1
-        typer.echo(f"--- {sample.key}  {sample.stamp_ns / 1e9:.3f} s  #{sample.seq}")
-        typer.echo(_text(sample))
+        typer.echo(sample_text(sample))
 
     _listen(key, heard, lambda: left[0] != 0)
 
 
-def _text(sample: Sample) -> str:
+def sample_text(sample: Sample) -> str:
+    """A line with key, time and sequence number, then the message's fields, as text of several lines."""
+    return f"--- {sample.key}  {sample.stamp_ns / 1e9:.3f} s  #{sample.seq}\n{_fields(sample)}"
+
+
+def _fields(sample: Sample) -> str:
     topic = topic_of(sample.key)
     if topic is None:
         return f"{len(sample.payload)} bytes of {sample.type_name or 'unknown type'}"
@@ -88,7 +93,7 @@ def rates(key: str, seconds: float) -> None:
     end = time.monotonic() + seconds
     _listen(key, lambda s: stamps[s.key].append(s.stamp_ns), lambda: time.monotonic() < end)
     if not stamps:
-        raise BadInput(f"nothing heard on {_full(key)} within {seconds:g} s; 'uvf topic list --live' shows what there is")
+        raise BadInput(f"nothing heard on {full_key(key)} within {seconds:g} s; 'uvf topic list --live' shows what there is")
     for name, seen in sorted(stamps.items()):
         simulated = (seen[-1] - seen[0]) / 1e9
         sim_rate = (len(seen) - 1) / simulated if simulated > 0 else 0.0
@@ -97,7 +102,7 @@ def rates(key: str, seconds: float) -> None:
 
 def info(key: str) -> None:
     """Prints the table's line of a key and its live endpoints."""
-    topic = topic_of(_full(key))
+    topic = topic_of(full_key(key))
     if topic is None:
         known = [t.key.replace("<owner>", key.partition("/")[0]) for t in TOPICS.values()]
         raise BadInput(f"no topic '{key}' in the table; {nearest(key, known)}")

@@ -13,7 +13,8 @@ vehicle_app = typer.Typer(no_args_is_help=True, help="Look at vehicles, check th
 NameArgument = Annotated[str, typer.Argument(help="Name in vehicles/ or path of a vehicle's folder.")]
 NewName = Annotated[str, typer.Option("--name", help="Of the new folder in vehicles/.")]
 IntoOption = Annotated[Path | None, typer.Option("--into", help="Where the folder goes; by default vehicles/.")]
-Metres = Annotated[float, typer.Option(min=0.005, max=5.0, help="m")]
+
+LEAST, MOST = 0.005, 5.0  # m
 
 
 def _root() -> Path:
@@ -87,8 +88,10 @@ def picture(
 @vehicle_app.command()
 def linearize(
     name: NameArgument,
-    speed: Annotated[float | None, typer.Option(min=0.1, help="m/s; by default the trim_speed of the vehicle's file.")] = None,
-    altitude: Annotated[float, typer.Option(min=-500.0, max=80_000.0, help="m AMSL")] = 100.0,
+    speed: Annotated[
+        float | None, typer.Option(min=0.1, metavar="m/s", help="Airspeed; by default the trim_speed of the vehicle's file.")
+    ] = None,
+    altitude: Annotated[float, typer.Option(min=-500.0, max=80_000.0, metavar="m", help="Above mean sea level.")] = 100.0,
     picture: Annotated[Path | None, typer.Option(help="Where to draw the map of the poles, a .png.")] = None,
     json: Annotated[Path | None, typer.Option(help="File for the figures.")] = None,
 ) -> None:
@@ -136,10 +139,10 @@ def tune(
 @vehicle_app.command()
 def new(
     name: Annotated[str, typer.Argument(help="Of the new folder in vehicles/.")],
-    radius: Metres,
-    track: Metres,
-    wheel_radius: Metres,
-    height: Metres,
+    radius: Annotated[float, typer.Option(min=LEAST, max=MOST, metavar="m", help="Of the body, seen from above.")],
+    track: Annotated[float, typer.Option(min=LEAST, max=MOST, metavar="m", help="From the middle of one wheel to that of the other.")],
+    wheel_radius: Annotated[float, typer.Option(min=LEAST, max=MOST, metavar="m", help="Of the two driven wheels.")],
+    height: Annotated[float, typer.Option(min=LEAST, max=MOST, metavar="m", help="From the floor to the top of the body.")],
 ) -> None:
     """Make a round two-wheeled vehicle from four measures: a folder that drives, to go on from."""
     from launch.vehicles.creation import Measures, create

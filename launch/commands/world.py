@@ -6,11 +6,12 @@ from typing import Annotated
 import typer
 
 from launch.refusal import bad_input_is_one_line, counted
+from launch.settings import runs_folder
 
 world_app = typer.Typer(no_args_is_help=True, help="Worlds: list, show, check, picture, new, import.")
 
 NameArgument = Annotated[str, typer.Argument(help="A folder in worlds/.")]
-RadiusOption = Annotated[float, typer.Option(min=0.01, max=10.0, help="Of the vehicle that is to drive there [m].")]
+RadiusOption = Annotated[float, typer.Option(min=0.01, max=10.0, metavar="m", help="Of the vehicle that is to drive there.")]
 BURGER = 0.115  # m
 
 
@@ -44,7 +45,7 @@ def world_show(name: NameArgument) -> None:
 def world_picture(
     name: NameArgument,
     radius: RadiusOption = BURGER,
-    out: Annotated[Path | None, typer.Option(help="By default docs/images/worlds/NAME.png.")] = None,
+    out: Annotated[Path | None, typer.Option(help="By default runs/worlds/NAME.png.")] = None,
 ) -> None:
     """Draw floor plan and view side by side."""
     from launch.worlds.picture import save_picture
@@ -52,7 +53,7 @@ def world_picture(
     from uvf.models.world.file import load_world
     from uvf.models.world.geometry import floor_plan
 
-    path = out or _worlds().parent / "docs" / "images" / "worlds" / f"{name}.png"
+    path = out or runs_folder() / "worlds" / f"{name}.png"
     with bad_input_is_one_line():
         world = load_world(_worlds(), name)
         plan = floor_plan(world, RESOLUTION)
@@ -107,7 +108,7 @@ def world_import(
     file: Annotated[Path, typer.Argument(help="A Gazebo .world or .sdf, or the yaml of a map.")],
     name: Annotated[str, typer.Option(help="Of the new folder in worlds/.")],
     models: Annotated[list[Path] | None, typer.Option(help="Folders with Gazebo models.")] = None,
-    height: Annotated[float, typer.Option(min=0.1, max=100.0, help="Of the walls of a map [m].")] = 2.0,
+    height: Annotated[float, typer.Option(min=0.1, max=100.0, metavar="m", help="Of the walls of a map.")] = 2.0,
     upright: Annotated[bool, typer.Option("--upright", help="Turn meshes that say that y is up, which Gazebo does not.")] = False,
     replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
 ) -> None:

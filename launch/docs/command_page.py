@@ -39,13 +39,17 @@ def _page(command: Any, path: str) -> Iterator[str]:
     if arguments or options:
         yield from ("| argument or option | default | meaning |", "|---|---|---|")
         yield from (_row(_usage(a), a) for a in arguments)
-        yield from (_row(", ".join([*o.opts, *o.secondary_opts]), o) for o in options)
+        yield from (_row(_names(o), o) for o in options)
         yield ""
 
 
 def _usage(argument: Any) -> str:
     name = str(argument.name).upper().replace("_", "-")
     return name if argument.required else f"[{name}]"
+
+
+def _names(option: Any) -> str:
+    return ", ".join([*option.opts, *option.secondary_opts]) + (f" {option.metavar}" if option.metavar else "")
 
 
 def _row(name: str, parameter: Any) -> str:

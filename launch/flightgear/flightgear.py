@@ -12,6 +12,7 @@ from google.protobuf.message import Message
 import uvf
 from launch import settings
 from launch.flightgear.fdm_packet import Seen, packet
+from launch.running_mission import wanted_mission
 from schemas import topics
 from schemas.messages import Imu, JointStates, NavState
 from schemas.topics import Topic
@@ -87,10 +88,13 @@ def show(client: Client, vehicle: str, feed: Feed, send: Callable[[bytes], objec
         send(packet(feed.seen(truth, joints, imu)))
 
 
-def flightgear(vehicle: str, to: str, hz: float, mission: str) -> None:
-    """Sends ``hz`` packets a second [1/s] until Ctrl-C, from a port that accepts no input. Raises BadInput."""
+def flightgear(vehicle: str, to: str, hz: float, mission: str | None) -> None:
+    """Sends ``hz`` packets a second [1/s] until Ctrl-C, from a port that accepts no input.
+
+    mission: None for that of the running system. Raises BadInput.
+    """
     place = peer(to, "--to", DEFAULT_TO)
-    feed = feed_of(load_scenario(settings.mission_path(mission)), vehicle)
+    feed = feed_of(load_scenario(settings.mission_path(wanted_mission(mission))), vehicle)
     with uvf.connect() as client, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link, suppress(KeyboardInterrupt):
         try:
             link.connect(place)

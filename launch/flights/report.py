@@ -16,7 +16,7 @@ def flights(run: Path) -> list[History]:
     """The aircraft in the folder of a run or in one log. Raises BadInput."""
     found = [h for h in histories(logs_of(run)).values() if h.is_aircraft]
     if not found:
-        raise BadInput(f"{run}: there is no aircraft in this log: nothing to report of")
+        raise BadInput(f"{run}: there is no aircraft in this log: nothing to report")
     return found
 
 

@@ -2,7 +2,7 @@
 
 import io
 from collections.abc import Iterator
-from math import isfinite, radians
+from math import degrees, isfinite, radians
 from pathlib import Path
 
 import numpy as np
@@ -33,7 +33,7 @@ def figures(grid: GridMap) -> Iterator[str]:
     x, y, yaw = grid.origin
     walls = wall_figures(grid)
     yield f"{columns} x {rows} cells of {grid.resolution:g} m: {columns * grid.resolution:.2f} x {rows * grid.resolution:.2f} m"
-    yield f"lower left corner at ({x:g}, {y:g}) m, yaw {np.degrees(yaw):g} deg"
+    yield f"lower left corner at ({x + 0.0:g}, {y + 0.0:g}) m, yaw {_degrees(yaw)} deg"
     free, occupied = (grid.cells >= 0) & (grid.cells <= OCCUPIED), grid.cells > OCCUPIED
     area = grid.resolution**2
     yield f"free {free.sum() * area:.1f} m^2, occupied {occupied.sum() * area:.2f} m^2, unknown {(grid.cells < 0).mean():.1%} of the cells"
@@ -119,4 +119,14 @@ def _walls(walls: WallAgreement) -> Iterator[str]:
     for d in walls.detections:
         yield f"walls within {d.tolerance:.2f} m: F1 {d.f1:.3f}, precision {d.precision:.3f}, recall {d.recall:.3f}"
     for name, (mean, tail) in (("walls lie off the true ones", walls.to_true), ("true walls lie off the map's", walls.to_map)):
-        yield f"{name} by {mean:.3f} m on average, 95 % by less than {tail:.3f} m"
+        yield f"{name} by {_metres(mean)} on average, 95 % by less than {_metres(tail)}"
+
+
+def _metres(value: float) -> str:
+    """``-`` where there was nothing to measure."""
+    return f"{value:.3f} m" if isfinite(value) else "-"
+
+
+def _degrees(angle: float) -> str:
+    """An angle [rad] in degrees; 0 for -0."""
+    return f"{degrees(angle) + 0.0:g}"

@@ -6,7 +6,7 @@ import uvf.client
 from launch.launcher import stop_flag
 from schemas import topics
 from services.slam.map_server import in_world
-from uvf.models.world.map_file import GridMap
+from uvf.models.world.map_file import GridMap, undecided_share
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.zenoh_bus import ZenohBus
@@ -14,6 +14,7 @@ from uvf.runtime.messages.grids import as_map, as_message
 from uvf.slam.maps.session import MappingSession
 
 PATIENCE = 5.0  # s
+MOSTLY = 0.5
 
 
 def drawn_map(vehicle: str | None, own_frame: bool) -> tuple[str, GridMap]:
@@ -25,6 +26,17 @@ def drawn_map(vehicle: str | None, own_frame: bool) -> tuple[str, GridMap]:
             return owner, grid if own_frame else in_world(grid, run.read(owner, topics.TF_WORLD, PATIENCE))
         except TimeoutError as error:
             raise BadInput(f"{error}: {owner} has not drawn a map yet") from error
+
+
+def doubt(grid: GridMap, mode: str) -> str:
+    """What to say of a map most of whose seen cells are written as unknown, else nothing."""
+    share = undecided_share(grid)
+    if mode != "trinary" or share <= MOSTLY:
+        return ""
+    return (
+        f"{share:.0%} of the cells that were seen are written as unknown, for they were seen too seldom to be free or occupied: "
+        "drive on and save again, or use --mode scale, which keeps each cell's value"
+    )
 
 
 def running_session(vehicle: str | None) -> MappingSession:

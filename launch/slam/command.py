@@ -16,7 +16,7 @@ from launch.slam.known import known_of
 from launch.slam.opening import open_log
 from launch.slam.results import Made, write_results
 from launch.slam.scoring import figures
-from launch.slam.tables import Rows, all_tables
+from launch.slam.tables import Rows, all_tables, remarks
 from uvf.models.params import Params
 from uvf.models.yaml_data import BadInput
 from uvf.slam.evaluation.run import LogRun, run_over
@@ -57,6 +57,8 @@ def run_job(job: SlamJob) -> None:
     write_results(run, known, Made(job.method, params, job.resolution), found, folder)
     for heading, rows in all_tables(found).items():
         console.print(_table(heading, rows))
+    for line in remarks(found):
+        typer.echo(line)
     typer.echo(f"results in {folder}")
 
 

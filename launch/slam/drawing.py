@@ -13,7 +13,7 @@ from launch.slam.known import Known
 from uvf.maths.alignment import aligned
 from uvf.maths.se2_arrays import composed
 from uvf.models.world.map_file import GridMap
-from uvf.slam.evaluation.reference import Trajectory, deviations, paired
+from uvf.slam.evaluation.reference import Trajectory, deviations, is_alignable, paired
 from uvf.slam.evaluation.relations import GROSS, relation_errors
 from uvf.slam.evaluation.run import LogRun
 
@@ -126,7 +126,11 @@ def _distances(axes: Any, run: LogRun, known: Known, turning: bool) -> None:
     """Of the final poses from the references, by the number of the pose."""
     _titled(axes, f"distance to the reference: {'rotation' if turning else 'translation'}", "pose", "deg" if turning else "m")
     for name, reference in known.references.items():
-        error = deviations(Trajectory(run.log.stamps, run.final), reference)
+        estimate = Trajectory(run.log.stamps, run.final)
+        if turning and not is_alignable(estimate, reference):
+            axes.plot([], label=f"{name}: path too short to align")
+            continue
+        error = deviations(estimate, reference)
         shown = np.degrees(error[:, 2]) if turning else np.hypot(error[:, 0], error[:, 1])
         axes.plot(shown, lw=0.8, label=name)
     axes.legend(fontsize=8)

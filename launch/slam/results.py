@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from launch.slam.drawing import draw_map, draw_page
 from launch.slam.known import Known
 from launch.slam.scoring import Figures
-from launch.slam.tables import Rows, all_tables
+from launch.slam.tables import Rows, all_tables, remarks
 from uvf.maths.se2 import Pose2
 from uvf.models.params import Params
 from uvf.models.whole_file import write_whole
@@ -69,6 +69,7 @@ def _report(run: LogRun, title: str, figures: Figures, effective: dict[str, Any]
     parts = [f"# {title}", *(f"- {note}" for note in run.log.notes)]
     for heading, rows in all_tables(figures).items():
         parts += [f"## {heading.capitalize()}", _markdown(rows)]
+    parts += remarks(figures)
     parts += ["![Map, trajectory, errors](report.png)", "## Map", "![Map](map.png)"]
     parts += ["## Parameters", f"```yaml\n{yaml.safe_dump(effective, sort_keys=False)}```", ""]
     return "\n\n".join(parts)

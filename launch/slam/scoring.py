@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from launch.slam.known import Known
-from uvf.slam.evaluation.reference import Trajectory, TrajectoryError, absolute_error, relative_error
+from uvf.slam.evaluation.reference import Trajectory, TrajectoryError, absolute_error, is_alignable, relative_error
 from uvf.slam.evaluation.relations import RelationScore, Statistics, relation_errors, relation_scores
 from uvf.slam.evaluation.run import LogRun
 
@@ -16,7 +16,10 @@ Figures = dict[str, Any]
 
 
 def figures(run: LogRun, known: Known) -> Figures:
-    """Figures of a run: ``run`` has size and times; ``relations`` and ``references`` have errors by file, of online and final poses."""
+    """Figures of a run: ``run`` has size and times; ``relations`` and ``references`` have errors by file, of online and final poses.
+
+    The absolute error of the rotation is None where the path is too short to align.
+    """
     poses = {"online": run.online, "final": run.final}
     return {
         "run": _of_run(run),
@@ -25,7 +28,7 @@ def figures(run: LogRun, known: Known) -> Figures:
             for name, relations in known.relations.items()
         },
         "references": {
-            name: {when: _against(Trajectory(run.log.stamps, poses[when]), reference) for when in POSES}
+            name: {when: against(Trajectory(run.log.stamps, poses[when]), reference) for when in POSES}
             for name, reference in known.references.items()
         },
     }
@@ -64,14 +67,18 @@ def _statistics(s: Statistics) -> dict[str, float]:
     return {name: value for name, value in s._asdict().items() if name != "number"}
 
 
-def _against(estimate: Trajectory, reference: Trajectory) -> Figures:
+def against(estimate: Trajectory, reference: Trajectory) -> Figures:
+    """Errors [m, deg] of a trajectory by their kind. Raises BadInput."""
     found = {
         "absolute": absolute_error(estimate, reference),
         f"per {SHORT:g} m": relative_error(estimate, reference, SHORT),
         f"per {LONG:g} m": relative_error(estimate, reference, LONG),
     }
-    return {name: _deviation(d) for name, d in found.items() if d.number}
+    told: Figures = {name: _deviation(d) for name, d in found.items() if d.number}
+    if not is_alignable(estimate, reference):
+        told["absolute"]["rotation_rmse_deg"] = None
+    return told
 
 
-def _deviation(d: TrajectoryError) -> dict[str, float]:
+def _deviation(d: TrajectoryError) -> Figures:
     return {"number": d.number, "rmse_m": d.rmse, "mean_m": d.mean, "max_m": d.max, "rotation_rmse_deg": d.rotation_rmse}

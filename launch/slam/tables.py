@@ -1,6 +1,7 @@
 """The figures of a run as rows of text, the first one the heading."""
 
 from launch.slam.scoring import Figures
+from uvf.slam.evaluation.reference import ALIGNABLE
 
 Rows = list[tuple[str, ...]]
 
@@ -54,8 +55,18 @@ def _reference_rows(by_poses: Figures) -> Rows:
     for poses, kinds in by_poses.items():
         for kind, f in kinds.items():
             metres = [f"{f[key]:.3f}" for key in ("rmse_m", "mean_m", "max_m")]
-            rows.append((poses, kind, f"{f['number']}", *metres, f"{f['rotation_rmse_deg']:.2f}"))
+            turn = f["rotation_rmse_deg"]
+            rows.append((poses, kind, f"{f['number']}", *metres, "-" if turn is None else f"{turn:.2f}"))
     return rows
+
+
+def remarks(figures: Figures) -> list[str]:
+    """A line for each reference that has a figure which cannot be told."""
+    return [
+        f"distance to {name}: the path is too short to align (it reaches less than {ALIGNABLE:g} m), so no error of the rotation is told"
+        for name, by_poses in figures["references"].items()
+        if any(f["rotation_rmse_deg"] is None for kinds in by_poses.values() for f in kinds.values())
+    ]
 
 
 def all_tables(figures: Figures) -> dict[str, Rows]:

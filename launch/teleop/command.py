@@ -9,6 +9,7 @@ from typing import Protocol
 
 import uvf
 from launch import settings
+from launch.running_mission import wanted_mission
 from launch.teleop import aircraft
 from launch.teleop.gamepad import Gamepad
 from launch.teleop.link import TeleopLink
@@ -133,9 +134,9 @@ def post_for(site: Scenario, names: Sequence[str]) -> tuple[str, Callable[[Clien
     return GREETING, lambda client: WheelPost(DriveTeleop(chosen, most), TeleopLink(client))
 
 
-def teleop(names: Sequence[str], mission: str, say: Callable[[str], None]) -> None:
-    """Drives or flies until the operator ends it. Raises BadInput."""
-    greeting, post = post_for(load_scenario(settings.mission_path(mission)), names)
+def teleop(names: Sequence[str], mission: str | None, say: Callable[[str], None]) -> None:
+    """Drives or flies until the operator ends it; without a mission that of the running system counts. Raises BadInput."""
+    greeting, post = post_for(load_scenario(settings.mission_path(wanted_mission(mission))), names)
     with (
         uvf.connect() as client,
         key_by_key() as terminal,

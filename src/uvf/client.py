@@ -20,6 +20,7 @@ from google.protobuf.message import Message
 from schemas import topics
 from schemas.messages import Clock
 from schemas.topics import Request, Topic
+from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.interface import Publisher, Sample
 from uvf.runtime.bus.wire import decode, guarded
@@ -34,9 +35,20 @@ LOOK = 0.005  # s
 TOGETHER = 0.3  # s of simulation time, within which a request reaches all it is asked of
 
 
+class NoRouter(BadInput, ConnectionError):
+    """No system runs at the endpoint."""
+
+
 def connect(endpoint: str | None = None, timeout: float = 5.0) -> "Client":
-    """Joins a running system at ``endpoint``, or UVF_ROUTER. Raises BadInput without a router within ``timeout`` [s]."""
-    return Client(ZenohBus(endpoint or router_from(), timeout=timeout))
+    """Joins a running system at ``endpoint``, or UVF_ROUTER.
+
+    Raises NoRouter, a ConnectionError, without a router within ``timeout`` [s], and BadInput for what is no endpoint.
+    """
+    where = endpoint or router_from()
+    try:
+        return Client(ZenohBus(where, timeout=timeout))
+    except BadInput:
+        raise NoRouter(f"no router at {where}: start 'uvf up' first; UVF_ROUTER says where one runs") from None
 
 
 class Client:
@@ -93,8 +105,21 @@ class Client:
         """Newest message of a topic; waits for the first one for ``timeout`` [s, wall]. Raises TimeoutError."""
         key = topic.at(owner)
         self._watch(key, topic)
-        self.wait(lambda: key in self._newest, timeout, f"nothing on {key}")
+        try:
+            self.wait(lambda: key in self._newest, timeout, f"nothing on {key}")
+        except TimeoutError as error:
+            raise TimeoutError(f"{error}{self._if_unknown(owner)}") from None
         return cast(M, self._newest[key])
+
+    def vehicles(self) -> list[str]:
+        """Names of the vehicles whose autopilot is in the running system, sorted."""
+        ends = [token.split("/") for token in self._bus.tokens("@ep/**")]
+        return sorted({end[1] for end in ends if end[3] == "pub" and end[4].replace("%", "/") == topics.STATUS.at(end[1])})
+
+    def _if_unknown(self, owner: str) -> str:
+        """What there is instead of a vehicle that does not run, else nothing."""
+        known = self.vehicles()
+        return "" if owner in (topics.SYSTEM, *known) else f": no vehicle '{owner}' is running; {nearest(owner, known)}"
 
     def heard(self, owner: str, topic: Topic[Any]) -> int:
         """Number of messages of a topic that have come so far."""
@@ -140,7 +165,7 @@ class Client:
         """
         (reply,) = self.ask_together(owner, [request], message, timeout)
         if reply is None:
-            raise TimeoutError(f"nobody answers {request.at(owner)}")
+            raise TimeoutError(f"nobody answers {request.at(owner)}{self._if_unknown(owner)}")
         return reply
 
     def ask_together(self, owner: str, requests: Sequence[Request[Q, R]], message: Q, timeout: float = 5.0) -> list[R | None]:

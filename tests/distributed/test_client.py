@@ -51,3 +51,24 @@ def test_what_is_no_message_never_reaches_a_program():
             client.ask("burger", topics.ARM, topics.ARM.message())
         answering.undeclare()
     router.close()
+
+
+def test_without_a_router_it_is_one_error_that_says_what_to_start():
+    with pytest.raises(ConnectionError, match=r"no router at tcp/127\.0\.0\.1:9: start 'uvf up' first") as caught:
+        uvf.connect("tcp/127.0.0.1:9", timeout=0.2)
+    assert caught.value.__suppress_context__
+
+
+def test_a_vehicle_that_is_not_there_is_told_with_those_that_are():
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    router = open_router(endpoint)
+    with ZenohBus(endpoint, timeout=5.0) as bus, uvf.connect(endpoint) as client:
+        bus.token(f"@ep/scout/autopilot_ground/pub/{topics.STATUS.at('scout').replace('/', '%')}/uvf.v1.VehicleStatus")
+        client.wait(lambda: client.vehicles() == ["scout"], 20.0, "the vehicle is not seen")
+        with pytest.raises(TimeoutError, match="nobody answers uvf/scuot/srv/arm: no vehicle 'scuot' is running; did you mean 'scout'"):
+            client.ask("scuot", topics.ARM, topics.ARM.message())
+        with pytest.raises(TimeoutError, match=r"nothing on uvf/other/nav/pose within 0.1 s: no vehicle 'other' .*there are: scout"):
+            client.read("other", topics.POSE, 0.1)
+        with pytest.raises(TimeoutError, match=r"nothing on uvf/scout/nav/pose within 0.1 s$"):
+            client.read("scout", topics.POSE, 0.1)
+    router.close()

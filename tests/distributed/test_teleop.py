@@ -34,7 +34,7 @@ class Session:
         self.ours, self.its = pty.openpty()
         self.settings = termios.tcgetattr(self.its)
         self.process = subprocess.Popen(
-            ["sh", "-c", IGNORING_CTRL_C, "setsid", "--ctty", sys.executable, "-m", "launch.cli", "teleop", "burger"],
+            ["sh", "-c", IGNORING_CTRL_C, "setsid", "--ctty", sys.executable, "-m", "launch.cli", "teleop", "burger", "-m", "demo"],
             stdin=self.its,
             stdout=self.its,
             stderr=self.its,

@@ -86,3 +86,14 @@ def test_paths_that_pages_name_are_there():
 def test_no_page_is_left_out_of_the_repository():
     kept = subprocess.run(["git", "check-ignore", *(str(p) for p in pages.PAGES)], cwd=ROOT, capture_output=True, text=True, check=False)
     assert kept.stdout == ""
+
+
+def test_every_environment_variable_that_the_code_reads_is_on_the_page_and_the_other_way_round():
+    """A name in quotes in the code, or expanded by the shell's and compose's files."""
+    sources = [path for folder in ("src", "launch", "services") for path in (ROOT / folder).rglob("*.py")]
+    read = {name for path in sources for name in re.findall(r"""["'](UVF_[A-Z_]+)["']""", path.read_text())}
+    tests = (ROOT / "tests").rglob("*.py")
+    others = [ROOT / "uvf", ROOT / "docker-compose.yml", *tests]
+    expanded = {name for path in others for name in re.findall(r"""(?:\$\{|environ(?:\.get)?[(\[]["'])(UVF_[A-Z_]+)""", path.read_text())}
+    page = (ROOT / "docs" / "reference" / "environment.md").read_text()
+    assert set(re.findall(r"^\| `(UVF_[A-Z_]+)`", page, re.MULTILINE)) == read | expanded

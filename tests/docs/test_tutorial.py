@@ -4,6 +4,7 @@ import math
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -48,11 +49,11 @@ def test_lesson(lesson, clone):
             assert missing == [], f"{step.line} printed {seen}"
 
 
-def program() -> dict:
-    """The names of the tutorial's program, but for what needs a running system."""
+def program(name: str = "wander") -> dict:
+    """The names of the tutorial's program."""
     (text,) = (step.text for step in steps(TUTORIAL / "first-algorithm.md") if isinstance(step, File) and step.path == "wander.py")
-    names: dict = {}
-    exec(compile(text.partition("with uvf.connect()")[0], "wander.py", "exec"), names)
+    names: dict = {"__name__": name}
+    exec(compile(text, "wander.py", "exec"), names)
     return names
 
 
@@ -68,3 +69,13 @@ def test_the_program_drives_where_the_way_is_free_and_turns_to_the_freer_side():
     assert command(scan_of(3.0, 1.0, 1.0)).linear > 0
     assert command(scan_of(0.5, 2.0, 1.0)).angular > 0
     assert command(scan_of(0.5, 1.0, 2.0)).angular < 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"), [([], "say for how many seconds"), (["20"], "no router at tcp/127.0.0.1:9: start 'uvf up' first")]
+)
+def test_the_program_ends_with_one_line_without_its_argument_or_a_system(monkeypatch, arguments, line):
+    monkeypatch.setattr(sys, "argv", ["wander.py", *arguments])
+    monkeypatch.setenv("UVF_ROUTER", "tcp/127.0.0.1:9")
+    with pytest.raises(SystemExit, match=line):
+        program("__main__")

@@ -16,6 +16,7 @@ import yaml
 from launch import settings
 from launch.cli import main
 from launch.scoring.scores import MEASURES
+from tests.runtime.modes import free_port
 from uvf.models.scenario import ROOT
 
 
@@ -195,8 +196,13 @@ USAGE = {
     ("chek", "demo"): "no such command 'chek'; did you mean 'check'?; try 'uvf --help'",
     ("topic", "ehco", "x"): "no such command 'ehco'; did you mean 'echo'?; try 'uvf topic --help'",
     ("map", "load"): "missing argument 'name'; try 'uvf map load --help'",
-    ("up", "--ratee", "1"): "no such option: --ratee",
-    ("up", "--rate", "abc"): "invalid value for '--rate': ",
+    ("up", "--ratee", "1"): "no such option: --ratee; did you mean --rate?; try 'uvf up --help'",
+    ("run", "demo", "--untl", "3"): "no such option: --untl; did you mean --until?; try 'uvf run --help'",
+    ("up", "--rate", "abc"): "invalid value for '--rate': 'abc' is no number; try",
+    ("world", "check", "house", "--radius", "20"): "invalid value for '--radius': 20 m is above 10 m; try 'uvf world check --help'",
+    ("world", "check", "house", "--radius", "0"): "invalid value for '--radius': 0 m is below 0.01 m; try",
+    ("world", "new", "x", "--rooms", "100"): "invalid value for '--rooms': 100 is above 40; try 'uvf world new --help'",
+    ("world", "new", "x", "--rooms", "few"): "invalid value for '--rooms': 'few' is no whole number; try",
     ("up", "--rate", "nan"): "invalid value for '--rate': nan: give a number from 0 to 1000; try 'uvf up --help'",
     ("up", "--for", "-5"): "invalid value for '--for': -5: give a number at least 0.01; try 'uvf up --help'",
     ("up", "--for", "nan"): "invalid value for '--for': nan: give a number at least 0.01",
@@ -230,3 +236,27 @@ def test_the_fault_itself_is_named_before_a_router_is_looked_for(tmp_path):
         done = uvf(*arguments, UVF_ROUTER=NOWHERE)
         assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
         assert why in done.stderr
+
+
+def test_up_says_where_mavlink_goes(tmp_path, monkeypatch):
+    monkeypatch.setattr("launch.up.up", lambda *_: 0)
+    ports = {"UVF_RUNS": str(tmp_path), "UVF_GCS_PORT": str(free_port()), "UVF_ROUTER": f"tcp/127.0.0.1:{free_port()}"}
+    said = uvf("up", UVF_MAVLINK_TARGETS="", UVF_MAVLINK_LISTEN="", **ports).stdout
+    assert "MAVLink: off" in said and "14550" not in said
+    assert "MAVLink: to UDP 10.0.0.2:14550," in uvf("up", "--no-gcs", UVF_MAVLINK_TARGETS="10.0.0.2:14550", **ports).stdout
+
+
+def test_the_help_says_what_each_measure_is_and_no_type_of_a_flag():
+    said = " ".join(uvf("vehicle", "new", "--help", COLUMNS="160").stdout.split())
+    assert "From the floor to the top of the body." in said and "From the middle of one wheel" in said
+    assert "<bool>" not in said
+    assert all("<bool>" not in uvf(*words, "--help", COLUMNS="160").stdout for words in (("up",), ("bench",), ("world", "new"), ()))
+
+
+def test_the_help_of_shift_says_degrees_and_keeps_what_stands_in_it():
+    assert "x and y in m, yaw in degrees" in " ".join(uvf("map", "compare", "--help", COLUMNS="240").stdout.split())
+
+
+def test_the_help_of_bench_lists_the_groups():
+    said = uvf("bench", "--help", COLUMNS="160").stdout
+    assert all(name in said for name in settings.benchmark_names()) and "slow_lidar" in said

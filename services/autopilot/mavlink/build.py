@@ -10,7 +10,7 @@ from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.mavlink.connection.facts import VehicleInfo
 from services.autopilot.mavlink.connection.key_store import KeyStore
 from services.autopilot.mavlink.connection.signing import Signing
-from services.autopilot.mavlink.connection.targets import reserved, targets_from
+from services.autopilot.mavlink.connection.targets import DEFAULT_LISTEN, DEFAULT_TARGETS, LISTEN, TARGETS, reserved, targets_from
 from services.autopilot.mavlink.parameters.parameter_store import FileStore
 from services.autopilot.mavlink.service import MavlinkService
 from uvf.maths.geodesy import LocalTangent
@@ -23,16 +23,12 @@ from uvf.runtime.bus.address import peer
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.state.state_folder import state_folder
 
-TARGETS = "UVF_MAVLINK_TARGETS"
-LISTEN = "UVF_MAVLINK_LISTEN"
 IDENTITY = "UVF_MAVLINK_IDENTITY"
 REQUIRE_SIGNING = "UVF_MAVLINK_REQUIRE_SIGNING"
 IDENTITIES = {"px4": False, "generic": True}
 SWITCH = {"0": False, "1": True}
 KEYS = "mavlink-keys.json"
-DEFAULT_TARGETS = "127.0.0.1:14550,127.0.0.1:14540"
 AIR, GROUND = "autopilot_air", "autopilot_ground"
-DEFAULT_LISTEN = "127.0.0.1:14580"
 EXAMPLE = "127.0.0.1:14550"
 
 log = logging.getLogger(__name__)

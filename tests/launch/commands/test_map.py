@@ -6,6 +6,7 @@ from PIL import Image
 from typer.testing import CliRunner
 
 from launch.cli import app
+from launch.maps.running import doubt
 from uvf.maths.se2 import IDENTITY, Pose2
 from uvf.models.world.map_file import GridMap, save_map
 
@@ -18,6 +19,7 @@ ROOM[9:51, [9, 70]] = ROOM[[9, 50], 9:71] = 100
 def uvf(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("UVF_STATE", str(tmp_path / "state"))
+    monkeypatch.setenv("UVF_RUNS", str(tmp_path / "runs"))
 
     def run(*arguments):
         result = CliRunner().invoke(app, ["map", *arguments])
@@ -75,3 +77,25 @@ def test_a_map_is_measured_against_a_world(uvf, tmp_path):
     save_map(GridMap(np.full((20, 20), -1, dtype=np.int8), 0.05, IDENTITY), tmp_path / "a.yaml")
     code, said = uvf("compare", "a.yaml", "--world", "watkins", "--out", "a.png")
     assert code == 0 and "100.0% of the world's free floor is unknown" in said
+
+
+def test_a_map_without_walls_has_dashes_and_no_negative_zero(uvf, tmp_path):
+    save_map(GridMap(np.full((20, 20), 0, dtype=np.int8), 0.05, Pose2(-0.0, 0.0, -0.0)), tmp_path / "a.yaml")
+    code, said = uvf("compare", "a.yaml", "a.yaml")
+    assert code == 0 and "nan" not in said
+    assert "walls lie off the true ones by - on average, 95 % by less than -" in said
+    assert "corner at (0, 0) m, yaw 0 deg" in uvf("load", "a.yaml")[1]
+
+
+def test_the_picture_of_differences_lands_in_the_runs_folder(uvf, tmp_path):
+    save_map(GridMap(ROOM, 0.05, IDENTITY), tmp_path / "a.yaml")
+    _, said = uvf("compare", "a.yaml", "a.yaml")
+    assert f"uvf: {tmp_path / 'runs' / 'compare.png'}: white" in said
+    assert (tmp_path / "runs" / "compare.png").is_file() and not (tmp_path / "compare.png").exists()
+
+
+def test_a_map_that_is_mostly_written_as_unknown_is_told_of():
+    once = GridMap(np.where(ROOM == 0, 40, ROOM).astype(np.int8), 0.05, IDENTITY)
+    assert "of the cells that were seen are written as unknown" in doubt(once, "trinary") and "--mode scale" in doubt(once, "trinary")
+    assert doubt(once, "scale") == doubt(GridMap(ROOM, 0.05, IDENTITY), "trinary") == ""
+    assert doubt(GridMap(np.full((2, 2), -1, dtype=np.int8), 0.05, IDENTITY), "trinary") == ""

@@ -30,7 +30,7 @@ def log(tmp_path_factory):
 )
 def test_a_log_is_replayed_into_a_service_by_the_names_of_uvf_service_and_node_list(log, capsys, name, vehicle, instances):
     assert replay_into(log, name, vehicle, None) == 0
-    assert capsys.readouterr().out.strip() == f"{instances}: puts out the same"
+    assert capsys.readouterr().out.strip() == f"{instances}: output is identical"
 
 
 @pytest.mark.parametrize(
@@ -79,4 +79,6 @@ def test_a_mission_in_which_an_instance_has_failed_is_not_passed(tmp_path, capsy
     monkeypatch.setattr(OdometryService, "step", fails)
     monkeypatch.setattr(OdometryService, "stale", fails)
     assert run_and_report("demo", 0.5, tmp_path / "log.mcap") == 1
-    assert "odometry of burger failed: 3 of its steps" in capsys.readouterr().err
+    said = capsys.readouterr()
+    assert "odometry of burger failed: 3 of its steps" in said.err
+    assert "burger since" in said.out and "autopilot in mode" in said.out  # why the criteria do not hold

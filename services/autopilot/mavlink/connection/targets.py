@@ -11,8 +11,20 @@ from uvf.mavlink.endpoint import Peer
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.address import peer
 
+GCS = "127.0.0.1:14550"  # where a ground station of this machine listens
+TARGETS, DEFAULT_TARGETS = "UVF_MAVLINK_TARGETS", f"{GCS},127.0.0.1:14540"
+LISTEN, DEFAULT_LISTEN = "UVF_MAVLINK_LISTEN", "127.0.0.1:14580"
 Reserved = Mapping[Peer, int]
 """Ports that hear one vehicle, and are heard by it: numeric address -> system_id."""
+
+
+def where_mavlink_goes(environment: Mapping[str, str]) -> str:
+    """``MAVLink: to UDP 127.0.0.1:14550, listens on UDP 127.0.0.1:14580``, or ``MAVLink: off``, in words for whoever starts a mission."""
+    to = ", ".join(part.strip() for part in environment.get(TARGETS, DEFAULT_TARGETS).split(",") if part.strip())
+    listen = environment.get(LISTEN, DEFAULT_LISTEN).strip()
+    hint = " (QGroundControl: just start it)" if GCS in to.split(", ") else ""
+    parts = [f"to UDP {to}{hint}"] * bool(to) + [f"listens on UDP {listen}"] * bool(listen)
+    return f"MAVLink: {', '.join(parts) or 'off'}"
 
 
 class MavlinkTarget(NamedTuple):

@@ -132,6 +132,12 @@ def _greys(cells: Cells, mode: str) -> NDArray[np.uint8]:
     return np.where(occupied, OCCUPIED, np.where(free, FREE, UNKNOWN)).astype(np.uint8)
 
 
+def undecided_share(grid: GridMap) -> float:
+    """Share [0 to 1] of the seen cells that a trinary map has as unknown: neither surely free nor surely occupied."""
+    seen = grid.cells[grid.cells >= 0]
+    return float(((seen > FREE_UP_TO) & (seen < OCCUPIED_FROM)).mean()) if len(seen) else 0.0
+
+
 def _pixels(picture: Path) -> NDArray[Any]:
     """(rows, columns[, 3 or 4]) brightness, or colours, or those and the opacity, as they are in the picture: of 8 or of 16 bits."""
     if picture.exists() and not picture.is_file():  # a pipe would never be opened

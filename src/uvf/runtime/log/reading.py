@@ -126,6 +126,16 @@ def read_log(path: Path, keys: Iterable[str] | None = None) -> Iterator[Sample]:
             yield Sample(channel.topic[1:], name, message.data, message.log_time, message.sequence, 0)
 
 
+def log_keys(path: Path) -> list[str]:
+    """The keys that a log has messages of, sorted. Raises BadInput for a file that is not a whole log."""
+    with opened_log(path) as file:
+        summary = make_reader(file).get_summary()
+        if summary is None or summary.statistics is None:  # a log of another program: none of ours is
+            return sorted({channel.topic[1:] for _, channel, _ in _in_order(file)})
+        counts = summary.statistics.channel_message_counts
+        return sorted({channel.topic[1:] for n, channel in summary.channels.items() if counts.get(n)})
+
+
 def log_begin(path: Path) -> int:
     """Simulation time [ns] at which the recording began, for one that did not begin with the run; else 0. Raises BadInput.
 

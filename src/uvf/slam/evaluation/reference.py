@@ -21,6 +21,8 @@ ASSOCIATION = 0.05
 """s: poses that are farther apart in time are not of one another."""
 FEWEST = 2
 """Poses in common, below which nothing can be aligned."""
+ALIGNABLE = 0.3
+"""m: a path that reaches less far across has no direction by which it could be laid onto another."""
 WIDTHS = (4, 8)
 FORMS = "'stamp x y yaw' or 'stamp x y z qx qy qz qw'"
 
@@ -95,6 +97,12 @@ def deviations(estimate: Trajectory, reference: Trajectory) -> Floats:
     reference_from_map = np.array(aligned(theirs[:, :2], ours[:, :2]))
     laid = composed(reference_from_map, ours)
     return np.column_stack((laid[:, :2] - theirs[:, :2], wrapped(laid[:, 2] - theirs[:, 2])))
+
+
+def is_alignable(estimate: Trajectory, reference: Trajectory) -> bool:
+    """Whether the path in common reaches far enough across, ALIGNABLE, for its direction to be told by alignment."""
+    _, theirs = paired(estimate, reference)
+    return len(theirs) >= FEWEST and float(np.hypot(*np.ptp(theirs[:, :2], axis=0))) >= ALIGNABLE
 
 
 def absolute_error(estimate: Trajectory, reference: Trajectory) -> TrajectoryError:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from services.autopilot.mavlink.connection.targets import MavlinkTarget, reserved, targets_from
+from services.autopilot.mavlink.connection.targets import MavlinkTarget, reserved, targets_from, where_mavlink_goes
 from services.autopilot.mavlink.service import MavlinkService
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, PLANE_FACTS, ROVER, ROVER_FACTS, Rig, long, of, shelves, texts
 from uvf.mavlink import dialect as mav
@@ -47,3 +47,16 @@ def test_it_is_greeted_by_its_vehicle_and_cannot_command_another(rig):
     assert len([text for text in texts(heard) if "simulated autopilot" in text]) == 1
     assert [m.get_srcSystem() for m in of(heard, "AUTOPILOT_VERSION")] == [ROVER]
     assert not rig.plane.asked
+
+
+@pytest.mark.parametrize(
+    ("environment", "line"),
+    [
+        ({}, "MAVLink: to UDP 127.0.0.1:14550, 127.0.0.1:14540 (QGroundControl: just start it), listens on UDP 127.0.0.1:14580"),
+        ({"UVF_MAVLINK_TARGETS": "10.0.0.2:14550"}, "MAVLink: to UDP 10.0.0.2:14550, listens on UDP 127.0.0.1:14580"),
+        ({"UVF_MAVLINK_TARGETS": ""}, "MAVLink: listens on UDP 127.0.0.1:14580"),
+        ({"UVF_MAVLINK_TARGETS": "", "UVF_MAVLINK_LISTEN": ""}, "MAVLink: off"),
+    ],
+)
+def test_whoever_starts_a_mission_is_told_where_mavlink_goes(environment, line):
+    assert where_mavlink_goes(environment) == line

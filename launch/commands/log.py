@@ -1,0 +1,64 @@
+"""``uvf log``: recorded runs."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from launch import settings
+from launch.refusal import bad_input_is_one_line
+
+log_app = typer.Typer(no_args_is_help=True, help="Look at recorded runs.")
+
+
+def known_log(path: Path) -> Path:
+    """Resolves the path of a log or exits with one line."""
+    with bad_input_is_one_line():
+        return settings.log_path(path)
+
+
+LogArgument = Annotated[Path, typer.Argument(help="An MCAP log.", callback=known_log)]
+KeyArgument = Annotated[str, typer.Argument(help="As burger/nav/pose; * stands for one part.")]
+RunArgument = Annotated[Path, typer.Argument(metavar="LOG", help="An MCAP log, or a run's folder, as runs/latest.", callback=known_log)]
+
+
+@log_app.command("info")
+def log_info(log: LogArgument) -> None:
+    """Topics, counts, length, gaps and hash of a log."""
+    from launch.commands.report import describe_log
+
+    with bad_input_is_one_line():
+        describe_log(log)
+
+
+@log_app.command("events")
+def log_events(log: RunArgument) -> None:
+    """What happened, in order: time, vehicle, severity, text, cause."""
+    from launch.logs import event_lines
+
+    with bad_input_is_one_line():
+        for line in event_lines(log):
+            typer.echo(line)
+
+
+@log_app.command("echo")
+def log_echo(
+    log: RunArgument,
+    key: KeyArgument,
+    count: Annotated[int, typer.Option("-n", min=0, help="Stop after so many; 0 = all.")] = 0,
+) -> None:
+    """Print the messages of a topic, as 'uvf topic echo' does."""
+    from launch.logs import message_lines
+
+    with bad_input_is_one_line():
+        for line in message_lines(log, key, count):
+            typer.echo(line)
+
+
+@log_app.command("recover")
+def log_recover(log: LogArgument, out: Annotated[Path | None, typer.Option(help="By default <log>-recovered.mcap.")] = None) -> None:
+    """Save what can be saved of a log that was cut off."""
+    from launch.commands.report import recover_log
+
+    with bad_input_is_one_line():
+        recover_log(log, out)

@@ -1,0 +1,58 @@
+"""Why a vehicle has not done its mission: its last events, and what its planner and autopilot said at the end."""
+
+from collections import defaultdict, deque
+
+from schemas import topics
+from schemas.messages import Event, Mode, NavStatus, VehicleStatus
+from services.gcs.state.enum_names import enum_name
+from uvf.runtime.bus.interface import Bus, Sample
+
+KEPT = 5  # events of a vehicle
+
+
+class LastWords:
+    """Listens to a run on any bus (or is fed from a log) and keeps the last events and states of each vehicle."""
+
+    def __init__(self) -> None:
+        self._events: defaultdict[str, deque[tuple[float, str]]] = defaultdict(lambda: deque(maxlen=KEPT))
+        self._states: defaultdict[str, dict[str, tuple[float, str]]] = defaultdict(dict)  # by vehicle and topic: since when [s], what
+
+    def follow(self, bus: Bus) -> None:
+        """Subscribes to what vehicles say of themselves."""
+        for topic in (topics.EVENTS.by("*"), topics.NAV_STATUS, topics.STATUS):
+            bus.subscribe(topic.at("*"), topic.qos, self.heard, depth=256)
+
+    def heard(self, sample: Sample) -> None:
+        """Stores a sample of a vehicle; a state counts from the first message that says so."""
+        _, vehicle, name = sample.key.split("/", 2)
+        t = sample.stamp_ns / 1e9
+        if name.startswith("state/events/"):
+            self._events[vehicle].append((t, event_text(Event.FromString(sample.payload))))
+            return
+        planner = name == "nav/status"
+        text = _planner(NavStatus.FromString(sample.payload)) if planner else _autopilot(VehicleStatus.FromString(sample.payload))
+        if self._states[vehicle].get(name, (t, ""))[1] != text:
+            self._states[vehicle][name] = t, text
+
+    def of(self, vehicle: str) -> list[str]:
+        """Lines about a vehicle: its last events with their times, then its states with the time since when they hold [s, simulation]."""
+        told = [f"{vehicle} at {t:.1f} s: {text}" for t, text in self._events[vehicle]]
+        told += [f"{vehicle} since {t:.1f} s: {text}" for t, text in self._states[vehicle].values()]
+        return told or [f"{vehicle}: no event and no status was recorded"]
+
+
+def event_text(event: Event) -> str:
+    """``warning: low battery (cause: 10.5 V)``."""
+    cause = f" (cause: {event.cause})" if event.cause else ""
+    return f"{enum_name(Event.Severity, event.severity)}: {event.text}{cause}"
+
+
+def _planner(status: NavStatus) -> str:
+    job = f", job {status.job}" if status.job else ""
+    return f"planner {enum_name(NavStatus.State, status.state)}{job}" + (f": {status.reason}" if status.reason else "")
+
+
+def _autopilot(status: VehicleStatus) -> str:
+    why = [status.reason, *status.failsafes, *(status.prearm if not status.armed else ())]
+    armed = "armed" if status.armed else "disarmed"
+    return f"autopilot in mode {enum_name(Mode, status.mode)}, {armed}" + "".join(f"; {reason}" for reason in why if reason)
