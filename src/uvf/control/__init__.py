@@ -19,4 +19,4 @@ OFFERED = {
     "Cycle": "uvf.control.cycle:Cycle",
 }
 __all__ = list(OFFERED)
-__getattr__ = lazily(__name__, OFFERED)
+__getattr__, __dir__ = lazily(__name__, OFFERED)

@@ -21,4 +21,4 @@ OFFERED = {
     "DelayLine": "uvf.sensors.sampling:DelayLine",
 }
 __all__ = list(OFFERED)
-__getattr__ = lazily(__name__, OFFERED)
+__getattr__, __dir__ = lazily(__name__, OFFERED)
