@@ -92,8 +92,9 @@ def _radius(member: MissionVehicle) -> float:
     return member.file.ground.radius if member.file.ground is not None else AIRCRAFT_RADIUS
 
 
-def load_scenario(mission: Path, root: Path = ROOT) -> Scenario:
-    """Loads a mission file and all that it names. Raises BadInput."""
+def load_scenario(mission: str | Path, root: str | Path = ROOT) -> Scenario:
+    """Loads a mission file and all that it names. root: folder that holds ``vehicles`` and ``worlds``. Raises BadInput."""
+    mission, root = Path(mission), Path(root)
     data = load_mission(mission)
     members = {
         name: MissionVehicle(name, entry, load_vehicle(root / "vehicles", entry.model), root / "vehicles" / entry.model)

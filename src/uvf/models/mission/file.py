@@ -162,8 +162,9 @@ class MissionFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     faults: Annotated[list[Fault], plain("Sensors and servos that fail during the run.")] = []
 
 
-def load_mission(path: Path) -> MissionFile:
+def load_mission(path: str | Path) -> MissionFile:
     """Reads and cross-checks a mission file. Raises BadInput."""
+    path = Path(path)
     if not path.is_file():
         known = [p.stem for p in path.parent.glob("*.yaml")] if path.parent.is_dir() else []
         raise BadInput(f"no mission '{path}'; {nearest(path.stem, known)}")

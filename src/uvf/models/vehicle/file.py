@@ -68,11 +68,11 @@ class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     variant_of: Annotated[Name | None, plain("Another vehicle whose file holds what this one leaves out.")] = None
 
 
-def load_vehicle(vehicles: Path, name: str) -> VehicleFile:
-    """Reads ``vehicles/<name>/vehicle.yaml``. Raises BadInput."""
-    folder = vehicles / name
+def load_vehicle(vehicles: str | Path, name: str) -> VehicleFile:
+    """Reads ``<vehicles>/<name>/vehicle.yaml``, where ``vehicles`` is the folder of all vehicles. Raises BadInput."""
+    folder = Path(vehicles) / name
     if not (folder / "vehicle.yaml").is_file():
-        known = [p.parent.name for p in vehicles.glob("*/vehicle.yaml")]
+        known = [p.parent.name for p in Path(vehicles).glob("*/vehicle.yaml")]
         raise BadInput(f"no vehicle '{name}' in {vehicles}; {nearest(name, known)}")
     vehicle = load_yaml(folder / "vehicle.yaml", VehicleFile, fill_vehicle)
     place = FileLocation(str(folder / "vehicle.yaml"))

@@ -160,8 +160,9 @@ class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     fields: Annotated[list[Field], plain("Coloured patches of ground, only to be seen. Where two overlap, the first counts.")] = []
 
 
-def load_world(worlds: Path, name: str) -> WorldFile:
-    """Reads ``worlds/<name>/world.yaml``. Raises BadInput."""
+def load_world(worlds: str | Path, name: str) -> WorldFile:
+    """Reads ``<worlds>/<name>/world.yaml``, where ``worlds`` is the folder of all worlds. Raises BadInput."""
+    worlds = Path(worlds)
     path = worlds / name / "world.yaml"
     if not path.is_file():
         known = [p.parent.name for p in worlds.glob("*/world.yaml")]

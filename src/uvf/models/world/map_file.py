@@ -60,8 +60,9 @@ class GridMap:
     origin: Pose2
 
 
-def load_map(path: Path) -> GridMap:
+def load_map(path: str | Path) -> GridMap:
     """Map of a yaml file, or of a picture when the yaml lies beside it under the same name. Raises BadInput."""
+    path = Path(path)
     if path.suffix not in YAML:
         if path.suffix and path.suffix.lower() not in PICTURES:
             raise BadInput(f"{path}: no map by its ending: a map is a .yaml with a picture (.pgm or .png) beside it")

@@ -43,8 +43,9 @@ USUAL_RANGES = 100.0
 """m: the indoor lidars of such logs do not see farther."""
 
 
-def read_carmen(path: Path) -> LaserLog:
+def read_carmen(path: str | Path) -> LaserLog:
     """Log of a CARMEN file. Lines that cannot be read are left out and counted in the notes. Raises BadInput for one without sweeps."""
+    path = Path(path)
     try:
         with path.open(encoding="ascii", errors="replace") as file:
             lines = read_lines(file)
