@@ -18,6 +18,11 @@ SAID = {
     "03_dubins": r"LSL, 583 m, segments of 6, 301, 277 m",
     "04_trim": r"(?s)short period.*phugoid.*Dutch roll",
     "05_astar": r"\d\d\d cells, cost .* to \[3\.\d+ +5\.\d+\] m",
+    "06_sensors": r"10 s: 3\.\de-05 rad/s, white noise alone 3\.2e-05 rad/s",
+    "07_control": r"aileron 0\.2\d\d rad, elevator -0\.0\d\d rad, throttle 0\.\d\d",
+    "08_frames": r"\(3\.0, 3\.1\) m: 47\.0000279, 8\.0000394 deg",
+    "09_mavlink": r"(?s)21 bytes .*HEARTBEAT of system 1, type 10",
+    "10_models": r"(?s)burger: radius .*demo: burger, milvus.*no vehicle 'burgr' .*did you mean 'burger'\?",
 }
 PARTS = ("control", "estimation", "guidance", "models", "planning", "sensors", "slam")
 

@@ -34,7 +34,10 @@ class Beams:
 
 @dataclass(frozen=True)
 class Reading:
-    """One sweep. t: stamp of its last beam [s]; ranges: (n,) [m]; odom_from_base: by the odometry at ``t``."""
+    """One scan of a lidar with the odometry's pose at its end.
+
+    t: stamp of its last beam [s]; ranges: (n,) [m]; odom_from_base: by the odometry at ``t``.
+    """
 
     t: float
     ranges: Floats

@@ -42,7 +42,7 @@ DOUBTED = 0.01
 
 
 class GraphParams(Params, frozen=True):
-    """Motion after which a sweep becomes a keyframe: keyframe_distance [m], keyframe_turn [rad]."""
+    """Parameters of ``GraphSlam``: the motion after which a scan becomes a keyframe."""
 
     keyframe_distance: Annotated[float, key("m", "Distance driven after which a sweep becomes a keyframe.")] = 0.35
     keyframe_turn: Annotated[float, key("rad", "Angle turned after which a sweep becomes a keyframe.")] = 0.2
