@@ -141,7 +141,7 @@ def new(
     wheel_radius: Metres,
     height: Metres,
 ) -> None:
-    """Make a round two-wheeled vehicle from four measures: a folder that drives, to go on from."""
+    """Make a round two-wheeled vehicle from four dimensions: a working vehicle to start from."""
     from launch.vehicles.creation import Measures, create
 
     with bad_input_is_one_line():

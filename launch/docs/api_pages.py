@@ -11,7 +11,7 @@ SOURCE = ROOT / "src"
 PARTS: dict[str, str] = {
     "maths": "Geometry, geodesy, grids, ray casting, filters and models of the atmosphere.",
     "models": "Vehicles, worlds and missions as data: reading, checking, importing and drawing them.",
-    "sensors": "What instruments make of the truth: errors, sampling, sweeps.",
+    "sensors": "Models of instruments: errors, sampling, lidar scans in motion.",
     "estimation": "Attitude, air data and navigation filters; wheel odometry and its calibration.",
     "control": "Attitude, energy and rate control of aircraft; limits of actuators; design and tuning.",
     "guidance": "Paths, vector fields, corners, Dubins paths, approaches and formation slots.",

@@ -13,7 +13,7 @@ from uvf.models.scenario import ROOT
 
 LIBRARY = ROOT / "examples" / "library"
 SAID = {
-    "01_slam": r"200 sweeps, (6|7|8)\d keyframes, .* ends at Pose2\(x=3\.8\d*, y=4\.1\d*",
+    "01_slam": r"200 scans, (6|7|8)\d keyframes, .* ends at Pose2\(x=3\.8\d*, y=4\.1\d*",
     "02_ekf": r"position off by 0\.\d m in the median",
     "03_dubins": r"LSL, 583 m, segments of 6, 301, 277 m",
     "04_trim": r"(?s)short period.*phugoid.*Dutch roll",

@@ -1,4 +1,4 @@
-"""What instruments make of the truth: errors after IEEE Std 952, sampling, losses, sweeps of lidars."""
+"""Models of instruments: errors after IEEE Std 952, sampling, losses, lidar scans in motion."""
 
 from typing import TYPE_CHECKING
 

@@ -180,7 +180,7 @@ def _meant(pixels: NDArray[Any], file: MapFile) -> Cells:
 
 
 def _cells(colours: NDArray[np.float64], opacity: NDArray[np.float64] | None, file: MapFile) -> Cells:
-    """Of pixels, as nav2_map_server has it: trinary takes the opacity for one more colour, raw does not mind negate."""
+    """Of pixels, as nav2_map_server has it: trinary takes the opacity for one more colour, raw ignores negate."""
     channels = colours if opacity is None or file.mode != "trinary" else np.dstack((colours.repeat(3 // colours.shape[2], 2), opacity))
     shade = channels.mean(axis=2)
     if file.mode == "raw":
