@@ -171,7 +171,7 @@ def replay(
     vehicle: Annotated[str | None, typer.Option(help="Of this vehicle.")] = None,
     mission: Annotated[str | None, typer.Option("--mission", "-m", help=AS_TODAY, callback=known_mission)] = None,
 ) -> None:
-    """Put a log back onto the bus, or into one service to see what comes out otherwise."""
+    """Put a log back onto the bus, or into one service and compare the output."""
     from launch.commands.report import replay_into, replay_onto_bus
 
     with bad_input_is_one_line():

@@ -153,7 +153,7 @@ QUALITY = Topic(f"{_V}/nav/quality", m.EstimateQuality, 2, _Q.STATE, "how far th
 PATH = Topic(f"{_V}/nav/path", m.PosesInFrame, 2, _Q.STATE, "path being followed, world frame")
 NAV_STATUS = Topic(f"{_V}/nav/status", m.NavStatus, 2, _Q.STATE, "what the planner is doing", kept=True)
 MAP_POSE = Topic(
-    f"{_V}/nav/map_pose", m.MapFix, 5, _Q.STATE, "where the newest sweep places the vehicle in its map, and how surely", kept=True
+    f"{_V}/nav/map_pose", m.MapFix, 5, _Q.STATE, "where the newest scan places the vehicle in its map, and how surely", kept=True
 )
 MAP_SESSION = Topic(f"{_V}/map/session", m.MapSession, 0, _Q.LATCHED, "keyframes, poses and edges of the map", logged=False, kept=True)
 MAP = Topic(f"{_V}/map/grid", m.Grid, 0, _Q.LATCHED, "occupancy, int8: -1 unknown, 0..100", kept=True)

@@ -13,7 +13,7 @@ for reading in log:
 slam.finish()
 grid.follow(slam.keyframes())
 cells, (x, y) = grid.cells()  # int8, row 0 at the lowest y: -1 unknown, 0 free .. 100 occupied
-print(f"{len(log)} sweeps, {len(grid)} keyframes, {cells.shape} cells; ends at {estimate.map_from_base}")
+print(f"{len(log)} scans, {len(grid)} keyframes, {cells.shape} cells; ends at {estimate.map_from_base}")
 plt.imshow(cells, origin="lower", cmap="Greys", extent=(x, x + 0.05 * cells.shape[1], y, y + 0.05 * cells.shape[0]))
 plt.plot(*slam.trajectory()[:, :2].T)
 plt.savefig("slam.png")

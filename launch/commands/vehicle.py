@@ -144,7 +144,7 @@ def new(
     wheel_radius: Annotated[float, typer.Option(min=LEAST, max=MOST, metavar="m", help="Of the two driven wheels.")],
     height: Annotated[float, typer.Option(min=LEAST, max=MOST, metavar="m", help="From the floor to the top of the body.")],
 ) -> None:
-    """Make a round two-wheeled vehicle from four measures: a folder that drives, to go on from."""
+    """Make a round two-wheeled vehicle from four dimensions: a working vehicle to start from."""
     from launch.vehicles.creation import Measures, create
 
     with bad_input_is_one_line():

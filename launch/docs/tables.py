@@ -130,4 +130,4 @@ def _text(value: Any) -> str:
         return f"[{', '.join(_text(v) for v in value)}]"
     if isinstance(value, list | dict):
         return "none"
-    return "see there" if isinstance(value, msgspec.Struct) else f"`{value}`"
+    return "defaults of its own keys" if isinstance(value, msgspec.Struct) else f"`{value}`"

@@ -140,7 +140,7 @@ def _quality(axes: Any, run: LogRun) -> None:
     t = np.array([r.t for r in run.log]) - run.log.readings[0].t
     axes.plot(t, run.quality, color=TRAJECTORY, lw=0.5)
     axes.set_ylim(-0.02, 1.02)
-    _titled(axes, "quality of the online poses: how much of each sweep fits", "s", "")
+    _titled(axes, "quality of the online poses: how much of each scan fits", "s", "")
 
 
 def _titled(axes: Any, title: str, x: str, y: str) -> None:

@@ -1,4 +1,4 @@
-"""``uvf vehicle new``: a round two-wheeled vehicle from four measures."""
+"""``uvf vehicle new``: a round two-wheeled vehicle from four dimensions."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -9,7 +9,7 @@ DENSITY = 250.0  # kg/m^3 of the whole body: boards, batteries and air
 HEAVIEST_WHEEL = 0.1  # of the body's mass
 
 URDF = """<?xml version="1.0"?>
-<!-- Made from four measures; change what is different. base_link lies on the floor under the middle of the axle, x forward. -->
+<!-- Made from four dimensions; change what is different. base_link lies on the floor under the middle of the axle, x forward. -->
 <robot name="{name}" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:include filename="../common/colours.xacro"/>
   <xacro:include filename="../common/inertia.xacro"/>

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 import services
-from launch.docs import keys_page, pages, params_page, source_links
+from launch.docs import api_pages, keys_page, pages, params_page, source_links
 from launch.docs.tables import Key, keys_of
 from uvf.models.keys import unit_of
 from uvf.models.params import Params
@@ -97,3 +97,14 @@ def test_every_environment_variable_that_the_code_reads_is_on_the_page_and_the_o
     expanded = {name for path in others for name in re.findall(r"""(?:\$\{|environ(?:\.get)?[(\[]["'])(UVF_[A-Z_]+)""", path.read_text())}
     page = (ROOT / "docs" / "reference" / "environment.md").read_text()
     assert set(re.findall(r"^\| `(UVF_[A-Z_]+)`", page, re.MULTILINE)) == read | expanded
+
+
+@pytest.mark.parametrize("part", api_pages.PARTS)
+def test_the_page_of_a_part_begins_with_what_one_imports_and_an_example(part):
+    page = api_pages.render(part)
+    sections = [line for line in page.splitlines() if line.startswith(("## ", ":::"))]
+    assert sections[:3] == ["## What you import", "## Example", "## All modules"]
+    offered = getattr(importlib.import_module(f"uvf.{part}"), "__all__", api_pages.modules(part))
+    rows = dict(re.findall(r"^\| \[`([\w.]+)`\]\[[\w.]+\] \| (.+) \|$", page, re.MULTILINE))
+    assert set(rows) == set(offered)
+    assert f"uvf.{part}" in page.partition("```python")[2].partition("```")[0]

@@ -15,7 +15,7 @@ from uvf.models.scenario import ROOT
 
 pytestmark = pytest.mark.timeout(300)  # where kernels have to be compiled first
 TUTORIAL = ROOT / "docs" / "tutorial"
-CODE = ("launch", "services", "schemas", "src", "vehicles", "worlds", "missions")
+CODE = ("launch", "services", "schemas", "src", "vehicles", "worlds", "missions", "examples")
 
 
 @pytest.fixture(scope="module")
@@ -31,8 +31,8 @@ def clone(tmp_path_factory):
 
 
 def run(command: str, folder: Path) -> list[str]:
-    environment = {**os.environ, "COLUMNS": "120", "UVF_STATE": str(folder / "state")}
-    environment.pop("PYTHONPATH", None)
+    paths = f"{folder}{os.pathsep}{folder / 'src'}"  # the environment's own is the tree that it was made for
+    environment = {**os.environ, "COLUMNS": "120", "UVF_STATE": str(folder / "state"), "PYTHONPATH": paths}
     done = subprocess.run(command.split(), cwd=folder, env=environment, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
     return (done.stdout + done.stderr).splitlines()

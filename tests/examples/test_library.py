@@ -13,11 +13,16 @@ from uvf.models.scenario import ROOT
 
 LIBRARY = ROOT / "examples" / "library"
 SAID = {
-    "01_slam": r"200 sweeps, (6|7|8)\d keyframes, .* ends at Pose2\(x=3\.8\d*, y=4\.1\d*",
+    "01_slam": r"200 scans, (6|7|8)\d keyframes, .* ends at Pose2\(x=3\.8\d*, y=4\.1\d*",
     "02_ekf": r"position off by 0\.\d m in the median",
     "03_dubins": r"LSL, 583 m, segments of 6, 301, 277 m",
     "04_trim": r"(?s)short period.*phugoid.*Dutch roll",
     "05_astar": r"\d\d\d cells, cost .* to \[3\.\d+ +5\.\d+\] m",
+    "06_sensors": r"10 s: 3\.\de-05 rad/s, white noise alone 3\.2e-05 rad/s",
+    "07_control": r"aileron 0\.2\d\d rad, elevator -0\.0\d\d rad, throttle 0\.\d\d",
+    "08_frames": r"\(3\.0, 3\.1\) m: 47\.0000279, 8\.0000394 deg",
+    "09_mavlink": r"(?s)21 bytes .*HEARTBEAT of system 1, type 10",
+    "10_models": r"(?s)burger: radius .*demo: burger, milvus.*no vehicle 'burgr' .*did you mean 'burger'\?",
 }
 PARTS = ("control", "estimation", "guidance", "models", "planning", "sensors", "slam")
 
@@ -50,7 +55,7 @@ def test_all_that_a_part_offers_is_there(part):
     package = import_module(f"uvf.{part}")
     for name in package.__all__:
         assert getattr(package, name).__module__.startswith("uvf."), name
-    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
+    with pytest.raises(AttributeError, match=f"no 'nothing' in uvf.{part}; "):
         _ = package.nothing
 
 

@@ -105,3 +105,17 @@ def test_the_way_to_a_cell_is_the_cheapest_one():
     reachable = np.argwhere(np.isfinite(ways.cost))
     goal = tuple(int(i) for i in reachable[-1])
     assert cost_along(cost, ways.to(goal)) == pytest.approx(ways.cost[goal])
+
+
+@pytest.mark.parametrize("beyond", [(0, 3), (2, 0), (-1, 0), (0, -1)])
+def test_a_cell_outside_the_map_is_refused(beyond):
+    cost = np.ones((2, 3))
+    where = rf"cell \(row {beyond[0]}, column {beyond[1]}\) is outside the map of 2 rows and 3 columns; check its frame"
+    with pytest.raises(ValueError, match=f"goal: {where}"):
+        astar(cost, (0, 0), beyond)
+    with pytest.raises(ValueError, match=f"start: {where}"):
+        astar(cost, beyond, (0, 0))
+    with pytest.raises(ValueError, match=f"start: {where}"):
+        CostToGo(cost, beyond)
+    with pytest.raises(ValueError, match=f"goal: {where}"):
+        CostToGo(cost, (0, 0)).to(beyond)

@@ -172,7 +172,7 @@ class OctreeService(Service):
             self._octree.insert(origin, ends, taken.beams.reach)
             self._changed, self._placed_at = True, t
         self._waiting = deque(still, maxlen=WAITING_MOST)
-        return self._tell(t, "pictures or sweeps cannot be mapped", reason) if reason and t - self._placed_at >= PATIENCE else []
+        return self._tell(t, "pictures or scans cannot be mapped", reason) if reason and t - self._placed_at >= PATIENCE else []
 
     def _draw(self, t: float, out: Outputs) -> None:
         """Raises TooLarge."""

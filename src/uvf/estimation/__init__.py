@@ -29,4 +29,4 @@ OFFERED = {
     "DriveFilter": "uvf.estimation.odometry.filter:DriveFilter",
 }
 __all__ = list(OFFERED)
-__getattr__ = lazily(__name__, OFFERED)
+__getattr__, __dir__ = lazily(__name__, OFFERED)

@@ -23,4 +23,4 @@ OFFERED = {
     "turn_radius": "uvf.guidance.vector_field:turn_radius",
 }
 __all__ = list(OFFERED)
-__getattr__ = lazily(__name__, OFFERED)
+__getattr__, __dir__ = lazily(__name__, OFFERED)

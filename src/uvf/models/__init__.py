@@ -25,4 +25,4 @@ OFFERED = {
     "AirParams": "uvf.models.vehicle.flight_params:AirParams",
 }
 __all__ = list(OFFERED)
-__getattr__ = lazily(__name__, OFFERED)
+__getattr__, __dir__ = lazily(__name__, OFFERED)

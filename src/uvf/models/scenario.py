@@ -92,8 +92,9 @@ def _radius(member: MissionVehicle) -> float:
     return member.file.ground.radius if member.file.ground is not None else AIRCRAFT_RADIUS
 
 
-def load_scenario(mission: Path, root: Path = ROOT) -> Scenario:
-    """Loads a mission file and all that it names. Raises BadInput."""
+def load_scenario(mission: str | Path, root: str | Path = ROOT) -> Scenario:
+    """Loads a mission file and all that it names. root: folder that holds ``vehicles`` and ``worlds``. Raises BadInput."""
+    mission, root = Path(mission), Path(root)
     data, place = load_mission(mission), FileLocation(str(mission))
     vehicles, worlds = root / "vehicles", root / "worlds"
     files = {name: load_vehicle(vehicles, entry.model, place.at("vehicles", name, "model")) for name, entry in data.vehicles.items()}

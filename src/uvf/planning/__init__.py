@@ -25,4 +25,4 @@ OFFERED = {
     "Explorer": "uvf.planning.exploration:Explorer",
 }
 __all__ = list(OFFERED)
-__getattr__ = lazily(__name__, OFFERED)
+__getattr__, __dir__ = lazily(__name__, OFFERED)

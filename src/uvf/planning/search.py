@@ -125,20 +125,37 @@ def _trace(before: Cells, columns: int, goal: tuple[int, int]) -> Cells:
 
 
 class CostToGo:
-    """The cheapest paths from one cell to all others of a cost grid (negative = impassable)."""
+    """The cheapest paths from one cell to all others of a cost grid (negative = impassable). Raises ValueError for a cell outside it."""
 
     def __init__(self, cost: Floats, start: Cell) -> None:
+        _check_cell("start", start, cost)
         self.cost, self._before = _expand(cost, start, (-1, -1))
         """(rows, columns) cost of the way there [cells], inf where none leads."""
 
     def to(self, goal: Cell) -> Cells:
         """Path (n, 2) of cells from the start to ``goal``; only for a goal that ``cost`` says can be reached."""
+        _check_cell("goal", goal, self.cost)
         return _trace(self._before, self.cost.shape[1], goal)
 
 
 def astar(cost: Floats, start: Cell, goal: Cell) -> tuple[Cells, float] | None:
-    """Path (n, 2) of cells from start to goal and its cost [cells] over a grid (rows, columns) of costs >= 1; None if there is none."""
+    """Path (n, 2) of cells from start to goal and its cost [cells] over a grid (rows, columns) of costs >= 1; None if no path leads there.
+
+    start, goal: (row, column), as ``Costmap.cell`` makes them of metres. A cell outside the grid raises ValueError: most often the
+    wrong frame or unit, which None would hide. ``Costmap.holds`` says beforehand whether a cell lies on the map.
+    """
+    _check_cell("start", start, cost)
+    _check_cell("goal", goal, cost)
     if cost[goal] < 0.0:
         return None
     g, before = _expand(cost, start, goal)
     return (_trace(before, cost.shape[1], goal), float(g[goal])) if np.isfinite(g[goal]) else None
+
+
+def _check_cell(what: str, cell: Cell, cost: Floats) -> None:
+    rows, columns = cost.shape
+    if not (0 <= cell[0] < rows and 0 <= cell[1] < columns):
+        raise ValueError(
+            f"{what}: cell (row {cell[0]}, column {cell[1]}) is outside the map of {rows} rows and {columns} columns; "
+            "check its frame (map) and unit (m)"
+        )

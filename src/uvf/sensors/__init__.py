@@ -1,4 +1,4 @@
-"""What instruments make of the truth: errors after IEEE Std 952, sampling, losses, sweeps of lidars."""
+"""Models of instruments: errors after IEEE Std 952, sampling, losses, lidar scans in motion."""
 
 from typing import TYPE_CHECKING
 
@@ -21,4 +21,4 @@ OFFERED = {
     "DelayLine": "uvf.sensors.sampling:DelayLine",
 }
 __all__ = list(OFFERED)
-__getattr__ = lazily(__name__, OFFERED)
+__getattr__, __dir__ = lazily(__name__, OFFERED)

@@ -37,4 +37,4 @@ OFFERED = {
     "run_over": "uvf.slam.evaluation.run:run_over",
 }
 __all__ = list(OFFERED)
-__getattr__ = lazily(__name__, OFFERED)
+__getattr__, __dir__ = lazily(__name__, OFFERED)

@@ -1,4 +1,4 @@
-"""What a 2-D SLAM method is fed with: a sweep of ranges and where the odometry has the vehicle at its stamp."""
+"""What a 2-D SLAM method is fed with: a scan of ranges and where the odometry has the vehicle at its stamp."""
 
 from dataclasses import dataclass, field
 
@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Beams:
-    """Geometry of a lidar's beams; one object serves all sweeps of the same shape.
+    """Geometry of a lidar's beams; one object serves all scans of the same shape.
 
     origin: (x, y) of the lidar in the base frame [m]; bearings: (n,) direction of each beam in the base frame [rad], in the
     order in which they are measured: falling for a lidar that turns clockwise or hangs upside down.
@@ -34,7 +34,10 @@ class Beams:
 
 @dataclass(frozen=True)
 class Reading:
-    """One sweep. t: stamp of its last beam [s]; ranges: (n,) [m]; odom_from_base: by the odometry at ``t``."""
+    """One scan of a lidar with the odometry's pose at its end.
+
+    t: stamp of its last beam [s]; ranges: (n,) [m]; odom_from_base: by the odometry at ``t``.
+    """
 
     t: float
     ranges: Floats

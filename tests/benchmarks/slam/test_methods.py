@@ -100,7 +100,7 @@ def test_a_variant_that_no_relation_outlives_has_a_row_without_errors(data, in_t
 
 def test_a_file_that_is_no_log_is_told_and_passed_over(data, in_this_process, capsys):
     assert methods.cases(data)["broken:odometry:plain"](data) == {}
-    assert "broken.clf: no sweep can be read" in capsys.readouterr().err
+    assert "broken.clf: no scan can be read" in capsys.readouterr().err
 
 
 def test_a_case_runs_in_a_process_that_has_one_core_and_one_thread(monkeypatch):

@@ -274,7 +274,7 @@ def test_odometry_that_leaps_is_told_and_taken_for_standing_still(tmp_path, leap
         ("", "is empty"),
         ("hello\nworld\n", "not a CARMEN log"),
         ("ODOM 0 0 0 0 0 0 1 h 1\n", "no FLASER"),
-        ("FLASER 180 1 2 3 1.0 h 1.0\n", "no sweep can be read: 1 lines with not as many ranges as the line says (first: line 1)"),
+        ("FLASER 180 1 2 3 1.0 h 1.0\n", "no scan can be read: 1 lines with not as many ranges as the line says (first: line 1)"),
     ],
 )
 def test_a_file_without_a_usable_sweep_is_refused_in_one_line(tmp_path, text, told):

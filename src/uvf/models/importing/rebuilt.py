@@ -78,7 +78,7 @@ def _add_base(parts: _Parts, trunk: list[str], foreign: Foreign) -> None:
     visuals, collisions = (tuple(replace(s, name=BASE) for s in kind) for kind in shapes)
     carries = any(link.collisions for name, link in parts.model.links.items() if name in parts.model.rigid_with(trunk[0]))
     if not collisions and visuals and not carries:
-        foreign.notes.add("no collision shape in the file: the box about the looks is taken", ", ".join(trunk))
+        foreign.notes.add("no collision shape in the file: the bounding box of the visual is taken", ", ".join(trunk))
         collisions = (_box_about(visuals),)
     parts.links[BASE] = Link(BASE, joined(masses), visuals, collisions)
     gone = [n for n in trunk if n != BASE]
@@ -87,7 +87,7 @@ def _add_base(parts: _Parts, trunk: list[str], foreign: Foreign) -> None:
 
 
 def _add_fixed(parts: _Parts, name: str, castors: dict[str, Solid], foreign: Foreign) -> None:
-    """A link as it is, held fast on base_link; of a castor the looks stay and a ball touches the floor."""
+    """A link as it is, held fast on base_link; of a castor the visual stays and a sphere touches the floor."""
     link, pose = parts.model.links[name], parts.poses[name]
     new = _named(name, parts)
     collisions = tuple(s for s in link.collisions) if name not in castors else ()

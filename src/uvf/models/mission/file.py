@@ -1,4 +1,4 @@
-"""``missions/<name>.yaml``: a world, the vehicles with their starts and jobs, and when it counts as done."""
+"""``missions/<name>.yaml``: a world, the vehicles with their starts and jobs, and pass criteria."""
 
 from pathlib import Path
 from typing import Annotated, Literal
@@ -70,7 +70,7 @@ class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class JobFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a vehicle does with nobody touching anything; empty = hold."""
+    """What a vehicle does without an operator; empty: hold."""
 
     explore: Annotated[bool, plain("A ground vehicle explores until it knows every place that it can reach.")] = False
     armed: Annotated[
@@ -86,7 +86,7 @@ class JobFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Maps(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Maps of map_server, world frame: files (from the mission file's folder on), or names of saved ones. An empty one serves too.
+    """Maps of map_server, world frame: files (relative to the mission file's folder), or names of saved ones. An empty one serves too.
 
     speed: a mask whose values v, 1..100, allow speed_base + speed_multiplier * v.
     known: may be a session of a mapping (.npz), too. known_at: x, y [m], yaw [rad] of the frame of its file in the world.
@@ -97,7 +97,7 @@ class Maps(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     known: Annotated[
         str | None,
         plain(
-            "Map that the vehicle knows: a map_server yaml (path from the mission file's folder), a session of a "
+            "Map that the vehicle knows: a map_server yaml (path relative to the mission file's folder), a session of a "
             "mapping run (.npz), or the name of a saved map."
         ),
     ] = None
@@ -157,13 +157,14 @@ class MissionFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ]
     seed: Annotated[int, key("", "Seed of every random number of the run. Two lockstep runs with the same seed are equal to the byte.")] = 1
     duration: Annotated[float, Meta(gt=0, le=1e6), key("s", "Simulation time after which `uvf run` ends and scores.")] = 120.0
-    criteria: Annotated[list[Criterion], plain("When the mission counts as done. All must hold.")] = []
+    criteria: Annotated[list[Criterion], plain("Pass criteria; all must hold.")] = []
     wind: Annotated[Wind | None, plain("Replaces the whole wind of the world.")] = None
     faults: Annotated[list[Fault], plain("Sensors and servos that fail during the run.")] = []
 
 
-def load_mission(path: Path) -> MissionFile:
+def load_mission(path: str | Path) -> MissionFile:
     """Reads and cross-checks a mission file. Raises BadInput."""
+    path = Path(path)
     if not path.is_file():
         known = [p.stem for p in path.parent.glob("*.yaml")] if path.parent.is_dir() else []
         raise BadInput(f"no mission '{path}'; {nearest(path.stem, known)}")

@@ -68,11 +68,11 @@ class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     variant_of: Annotated[Name | None, plain("Another vehicle whose file holds what this one leaves out.")] = None
 
 
-def load_vehicle(vehicles: Path, name: str, named_at: FileLocation | None = None) -> VehicleFile:
-    """Reads ``vehicles/<name>/vehicle.yaml``; ``named_at``: the spot of a file that names it. Raises BadInput."""
-    folder = vehicles / name
+def load_vehicle(vehicles: str | Path, name: str, named_at: FileLocation | None = None) -> VehicleFile:
+    """Reads ``<vehicles>/<name>/vehicle.yaml`` in the folder of all vehicles; ``named_at``: what names it. Raises BadInput."""
+    folder = Path(vehicles) / name
     if not (folder / "vehicle.yaml").is_file():
-        known = [p.parent.name for p in vehicles.glob("*/vehicle.yaml")]
+        known = [p.parent.name for p in Path(vehicles).glob("*/vehicle.yaml")]
         raise BadInput(f"{f'{named_at}: ' if named_at else ''}no vehicle '{name}' in {vehicles}; {nearest(name, known)}")
     vehicle = load_yaml(folder / "vehicle.yaml", VehicleFile, fill_vehicle)
     place = FileLocation(str(folder / "vehicle.yaml"))

@@ -16,7 +16,7 @@ FIXED = frozenset({"estimator"})
 
 
 class AirParams(FailsafeParams, frozen=True):
-    """Names have at most 16 characters, the length of a MAVLink parameter."""
+    """Parameters of an aircraft's autopilot. Names have at most 16 characters, the length of a MAVLink parameter."""
 
     estimator: Annotated[Literal["full", "book"], Meta(description="error-state filter, or the two filters of Beard & McLain")] = "full"
 

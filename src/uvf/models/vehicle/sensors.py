@@ -23,7 +23,7 @@ class Mount(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     xyz: Annotated[Triple, plain("Position x forward, y left, z up [m], in base_link or in `link`.")] = (0.0, 0.0, 0.0)
     rpy: Annotated[Angles, plain("Roll, pitch, yaw [rad]; [0, 1.5708, 0] looks straight down.")] = (0.0, 0.0, 0.0)
-    link: Annotated[Name | None, plain("Link of the URDF that the mount counts from; left out: base_link.")] = None
+    link: Annotated[Name | None, plain("Parent link of the mount, a link of the URDF; left out: base_link.")] = None
 
 
 class Delivery(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

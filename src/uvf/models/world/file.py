@@ -156,11 +156,12 @@ class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     wind: Annotated[Wind, plain("Wind of the place.")] = Wind()
     magnetic_field: Annotated[tuple[Tesla, Tesla, Tesla], plain("Magnetic field [T], ENU.")] = (0.0, 22.0e-6, -42.0e-6)
     ground_colour: Annotated[Colour, plain("Colour of the ground beyond the fields: red, green, blue, each 0 to 1.")] = (0.36, 0.5, 0.24)
-    fields: Annotated[list[Field], plain("Coloured patches of ground, only to be seen. Where two overlap, the first counts.")] = []
+    fields: Annotated[list[Field], plain("Coloured patches of ground, visual only. Where two overlap, the first counts.")] = []
 
 
-def load_world(worlds: Path, name: str, named_at: FileLocation | None = None) -> WorldFile:
-    """Reads ``worlds/<name>/world.yaml``; ``named_at``: the spot of a file that names it. Raises BadInput."""
+def load_world(worlds: str | Path, name: str, named_at: FileLocation | None = None) -> WorldFile:
+    """Reads ``<worlds>/<name>/world.yaml`` in the folder of all worlds; ``named_at``: the spot of a file that names it. Raises BadInput."""
+    worlds = Path(worlds)
     path = worlds / name / "world.yaml"
     if not path.is_file():
         known = [p.parent.name for p in worlds.glob("*/world.yaml")]

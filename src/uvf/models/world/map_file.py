@@ -60,8 +60,9 @@ class GridMap:
     origin: Pose2
 
 
-def load_map(path: Path) -> GridMap:
+def load_map(path: str | Path) -> GridMap:
     """Map of a yaml file, or of a picture when the yaml lies beside it under the same name. Raises BadInput."""
+    path = Path(path)
     if path.suffix not in YAML:
         if path.suffix and path.suffix.lower() not in PICTURES:
             raise BadInput(f"{path}: no map by its ending: a map is a .yaml with a picture (.pgm or .png) beside it")
@@ -185,7 +186,7 @@ def _meant(pixels: NDArray[Any], file: MapFile) -> Cells:
 
 
 def _cells(colours: NDArray[np.float64], opacity: NDArray[np.float64] | None, file: MapFile) -> Cells:
-    """Of pixels, as nav2_map_server has it: trinary takes the opacity for one more colour, raw does not mind negate."""
+    """Of pixels, as nav2_map_server has it: trinary takes the opacity for one more colour, raw ignores negate."""
     channels = colours if opacity is None or file.mode != "trinary" else np.dstack((colours.repeat(3 // colours.shape[2], 2), opacity))
     shade = channels.mean(axis=2)
     if file.mode == "raw":

@@ -30,11 +30,13 @@ class Shear(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Gust(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One minus cosine (CS 25.341): met by every aircraft at a ``time``, or standing at a ``place`` as a round column of air.
 
-    length: the whole of it along the flight, twice the standard's gradient distance H.
+    length: total length along the flight path, twice the standard's gradient distance H.
     """
 
-    velocity: Annotated[Velocity, plain("Velocity of the air in the middle of the gust [m/s], ENU, the way it blows to.")]
-    length: Annotated[float, Meta(ge=1, le=10_000), key("m", "Whole length along the flight, twice the gradient distance H of CS 25.341.")]
+    velocity: Annotated[Velocity, plain("Velocity of the air in the middle of the gust [m/s], ENU, pointing where the wind blows to.")]
+    length: Annotated[
+        float, Meta(ge=1, le=10_000), key("m", "Total length along the flight path, twice the gradient distance H of CS 25.341.")
+    ]
     time: Annotated[
         Annotated[float, Meta(ge=0, le=1e6)] | None,
         key("s", "Simulation time at which every aircraft meets it; give either `time` or `place`."),
@@ -58,9 +60,9 @@ class TurbulenceFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Wind(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Velocity of the air, the way it blows to, ENU [m/s]."""
+    """Velocity of the air [m/s], ENU, pointing where the wind blows to."""
 
-    steady: Annotated[Velocity, plain("Velocity of the air [m/s], ENU, the way it blows to.")] = (0.0, 0.0, 0.0)
+    steady: Annotated[Velocity, plain("Velocity of the air [m/s], ENU, pointing where the wind blows to.")] = (0.0, 0.0, 0.0)
     shear: Annotated[Shear | None, plain("How the steady wind grows with height.")] = None
     gusts: Annotated[list[Gust], plain("Single gusts, one minus cosine.")] = []
     turbulence: Annotated[TurbulenceFile | None, plain("Dryden turbulence.")] = None

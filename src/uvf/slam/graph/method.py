@@ -1,4 +1,4 @@
-"""Graph SLAM: sweeps are tracked against the last keyframes, places seen again close loops, a pose graph settles all of it."""
+"""Graph SLAM: scans are tracked against the last keyframes, places seen again close loops, a pose graph settles all of it."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -42,10 +42,10 @@ DOUBTED = 0.01
 
 
 class GraphParams(Params, frozen=True):
-    """Motion after which a sweep becomes a keyframe: keyframe_distance [m], keyframe_turn [rad]."""
+    """Parameters of ``GraphSlam``: the motion after which a scan becomes a keyframe."""
 
-    keyframe_distance: Annotated[float, key("m", "Distance driven after which a sweep becomes a keyframe.")] = 0.35
-    keyframe_turn: Annotated[float, key("rad", "Angle turned after which a sweep becomes a keyframe.")] = 0.2
+    keyframe_distance: Annotated[float, key("m", "Distance driven after which a scan becomes a keyframe.")] = 0.35
+    keyframe_turn: Annotated[float, key("rad", "Angle turned after which a scan becomes a keyframe.")] = 0.2
 
 
 @dataclass(frozen=True)

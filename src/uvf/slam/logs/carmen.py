@@ -43,8 +43,9 @@ USUAL_RANGES = 100.0
 """m: the indoor lidars of such logs do not see farther."""
 
 
-def read_carmen(path: Path) -> LaserLog:
+def read_carmen(path: str | Path) -> LaserLog:
     """Log of a CARMEN file. Lines that cannot be read are left out and counted in the notes. Raises BadInput for one without sweeps."""
+    path = Path(path)
     try:
         with path.open(encoding="ascii", errors="replace") as file:
             lines = read_lines(file)
@@ -59,7 +60,7 @@ def _why_nothing(path: Path, lines: Lines) -> str:
     if path.stat().st_size == 0:
         return "is empty"
     if lines.faults:
-        return f"no sweep can be read: {'; '.join(_faults(lines))}"
+        return f"no scan can be read: {'; '.join(_faults(lines))}"
     return "no FLASER or ROBOTLASER1 line in it: not a CARMEN log with laser and odometry"
 
 
@@ -119,7 +120,7 @@ def _notes_on_time(stamps: Floats) -> list[str]:
         notes.append(f"the clock is set back {len(resets)} times (first at stamp {stamps[resets[0]]:.6f})")
     if len(gaps := np.flatnonzero(np.diff(told) > LONG_GAP)):
         longest = gaps[np.diff(told)[gaps].argmax()]
-        notes.append(f"no sweep for more than {LONG_GAP:g} s {len(gaps)} times (longest after stamp {stamps[longest]:.6f})")
+        notes.append(f"no scan for more than {LONG_GAP:g} s {len(gaps)} times (longest after stamp {stamps[longest]:.6f})")
     return notes
 
 

@@ -23,7 +23,7 @@ class RbpfParams(Params, frozen=True):
     ] = 0.0
     maxUrange: Annotated[Length, key("m", "Longer beams are not used.")] = 80.0
     delta: Annotated[float, Meta(ge=0.01, le=0.5), key("m", "Cell size.")] = 0.05
-    sigma: Annotated[float, Meta(ge=0.005, le=0.5), key("m", "1 sigma of a beam's end while a sweep is matched.")] = 0.05
+    sigma: Annotated[float, Meta(ge=0.005, le=0.5), key("m", "1 sigma of a beam's end while a scan is matched.")] = 0.05
     lsigma: Annotated[float, Meta(ge=0.005, le=0.5), key("m", "1 sigma of a beam's end while particles are compared.")] = 0.03
     ogain: Annotated[float, Meta(ge=1.0, le=1000.0), key("", "Divisor of the log-likelihoods, for beams are not independent.")] = 120.0
     srr: Annotated[Noise, key("m/m", "1 sigma of the odometry's distance per distance.")] = 0.1

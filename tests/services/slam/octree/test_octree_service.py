@@ -142,7 +142,7 @@ def test_nothing_is_told_while_nothing_has_changed():
 def test_pictures_without_a_place_are_told_of_once_with_the_reason():
     made = service()
     events = [e for k in range(1, 20) for e in heard(made, 0.5 * k, depth=[wall_picture(0.1)], places={})["events"]]
-    assert [e.text for e in events] == ["pictures or sweeps cannot be mapped"]
+    assert [e.text for e in events] == ["pictures or scans cannot be mapped"]
     assert "no frame 'world'" in events[0].cause
 
 
