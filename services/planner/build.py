@@ -1,5 +1,7 @@
 """Planner and tracker for every ground vehicle of the mission."""
 
+from math import hypot
+
 import numpy as np
 
 from services.planner.planner_service import PlannerParams, PlannerService
@@ -34,7 +36,9 @@ def _hosts(member: MissionVehicle) -> list[ServiceInstance]:
     tracker = member.params("tracker", TrackerParams)
     return [
         ServiceInstance(
-            PlannerService, lambda: PlannerService(world_from_map, body.radius, member.entry.job.explore, planner), member.name
+            PlannerService,
+            lambda: PlannerService(world_from_map, body.radius, member.entry.job.explore, planner, hypot(*lidar.mount.xyz[:2])),
+            member.name,
         ),
         ServiceInstance(TrackerService, lambda: TrackerService(body, base_from_lidar, tracker, sweeping_of(lidar)), member.name),
     ]

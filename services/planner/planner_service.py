@@ -105,8 +105,10 @@ class PlannerService(Service):
 
     params: PlannerParams
 
-    def __init__(self, world_from_map: Pose2, radius: float, explores: bool, params: PlannerParams) -> None:
+    def __init__(self, world_from_map: Pose2, radius: float, explores: bool, params: PlannerParams, sensor_offset: float = 0.0) -> None:
+        """radius: the vehicle's [m]; sensor_offset: from its centre to the lidar that draws the map [m], in the plane."""
         self.params = params
+        self._sensor_offset = sensor_offset
         self._world_from_map = world_from_map
         self._map_from_world = inverse(world_from_map)
         self._explores = explores
@@ -125,6 +127,8 @@ class PlannerService(Service):
         """When a person's goal was reached or cancelled, as ``_ending`` says."""
         self._ending: NavStatus.State = NavStatus.REACHED
         self._is_there = False
+        self._shut_in = False
+        """Nothing can be planned from where the vehicle stands; told when it begins."""
         self._progress_at = 0.0
         self._progress_pose: Pose2 = IDENTITY
         self._tries = 0
@@ -137,7 +141,7 @@ class PlannerService(Service):
         here = compose(self._map_from_world, pose2_of(now.pose.pose))
         self._explorer.taste = self._taste
         self._bounds = now.bounds
-        changed = self._navigator.fit(self._body) | self._take_map(now.map)
+        changed = self._navigator.fit(self._body) | self._take_map(now.map) | self._navigator.stand(here[:2])
         goal_replies = self._ask_all(t, here, now.goal, now.status)
         home = home_of(now.status) or self._world_from_map[:2]
         return_point = self._return_points.step(now.status, (now.pose.pose.position.x, now.pose.pose.position.y), home, now.rally)
@@ -180,7 +184,8 @@ class PlannerService(Service):
 
     @property
     def _body(self) -> RobotFootprint:
-        return RobotFootprint(self._radius + self.params.margin, self.params.inflation_radius, self.params.cost_scaling_factor)
+        taste = self.params
+        return RobotFootprint(self._radius + taste.margin, taste.inflation_radius, taste.cost_scaling_factor, self._sensor_offset)
 
     @property
     def _taste(self) -> FrontierWeights:
@@ -240,6 +245,7 @@ class PlannerService(Service):
         if job.name != self._job.name:
             self._tell(t, f"job: {job.name}", "")
         self._job = job
+        self._shut_in = False
         self._ended_at = None
         self._progress_at = t
         self._tries = 0
@@ -256,12 +262,12 @@ class PlannerService(Service):
             self._replan_exploring(t, here)
 
     def _replan_exploring(self, t: float, here: Pose2) -> None:
-        ways, costs = self._navigator.ways(here[:2]), self._navigator.costs
-        if ways is None or costs is None:
-            self._target, self._plan = (
-                None,
-                PlannedPath(None, self._navigator.missing if costs is None else "the vehicle is outside its map"),
-            )
+        ways, costs, reason = self._navigator.ways(here[:2]), self._navigator.costs, self._navigator.shut_in(here[:2])
+        if reason and not self._shut_in:
+            self._tell(t, "explore: nothing can be planned", reason, Event.WARNING)
+        self._shut_in = bool(reason)
+        if reason or ways is None or costs is None:
+            self._target, self._plan = None, PlannedPath(None, reason)
             return
         frontier = self._explorer.choose(t, costs, ways)
         self._target = frontier or self._patrol.choose(here[:2], costs, ways)
@@ -365,7 +371,7 @@ class PlannerService(Service):
         if self._is_there:
             return NavStatus.REACHED
         if self._target is None:
-            return NavStatus.IDLE
+            return NavStatus.BLOCKED if self._shut_in else NavStatus.IDLE
         return NavStatus.DRIVING if self._plan.path is not None else NavStatus.BLOCKED
 
     def _tell(self, t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> None:

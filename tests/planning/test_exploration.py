@@ -100,3 +100,12 @@ def test_a_patrol_visits_all_ends_of_the_room():
     assert min(x for x, _ in seen) < 1.0
     assert max(x for x, _ in seen) > 5.0
     assert all(costs.cost[costs.cell(*p)] >= 0 for p in seen)
+
+
+def test_a_patrol_whose_goal_is_no_longer_on_the_map_goes_elsewhere():
+    large, small = costs_of(room(6.0, 2.0)), costs_of(room(2.0, 2.0))
+    patrol = Patrol()
+    assert patrol.choose((1.0, 1.0), large, ways_from(large, 1.0, 1.0))[0] > 5.0
+    assert patrol.choose((1.0, 1.0), small, ways_from(small, 1.0, 1.0))[0] < 2.0
+    patrol.goal = (-0.5, 1.0)  # the last columns, were it taken for an index
+    assert patrol.choose((1.0, 1.0), small, ways_from(small, 1.0, 1.0))[0] > 0.0

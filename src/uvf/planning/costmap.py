@@ -1,10 +1,11 @@
 """Costs of being at each cell of a map: how near the obstacles are, and where a vehicle's centre may not be."""
 
-from dataclasses import dataclass
-from math import floor
+from dataclasses import dataclass, replace
+from math import ceil, floor, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from uvf.maths.grids import distance_field
 
@@ -28,6 +29,11 @@ class RobotFootprint:
     radius: float  # m, to the nearest obstacle: nearer is impassable
     inflation_radius: float  # m, nearer costs more
     cost_scaling_factor: float  # factor on the cost of a way right at ``radius``, above 1
+    sensor_offset: float = 0.0  # m from the centre to the lidar that draws the map
+
+    def standing(self, resolution: float) -> float:
+        """Radius [m] of the ground that the vehicle covers as it turns, with the lidar's own cell on a map of ``resolution`` [m]."""
+        return max(self.radius, self.sensor_offset + sqrt(2.0) * resolution)
 
 
 @dataclass(frozen=True)
@@ -70,26 +76,92 @@ def make_costmap(cells: NDArray[np.int8], frame: Frame, body: RobotFootprint, un
     occupied, unknown = cells >= OCCUPIED, cells < 0
     free = ~unknown & (cells <= FREE)
     clearance = (distance_field(occupied) - 0.5) * resolution
-    nearness = np.clip((body.inflation_radius - clearance) / max(body.inflation_radius - body.radius, resolution), 0.0, 1.0)
-    cost = 1.0 + (body.cost_scaling_factor - 1.0) * nearness**2
+    cost = _inflated(clearance, resolution, body)
     cost[unknown] *= unknown_cost
     cost[(clearance < body.radius) | ~(free | unknown)] = IMPASSABLE
     cost[cost < 0.0] = IMPASSABLE
     return Costmap(resolution, origin, free, unknown, clearance, cost)
 
 
+def _inflated(clearance: Floats, resolution: float, body: RobotFootprint) -> Floats:
+    """Cost of free ground by its clearance [m], also where that is less than the vehicle needs."""
+    nearness = np.clip((body.inflation_radius - clearance) / max(body.inflation_radius - body.radius, resolution), 0.0, 1.0)
+    cost: Floats = 1.0 + (body.cost_scaling_factor - 1.0) * nearness**2
+    return cost
+
+
+def with_own_ground(costs: Costmap, start: Cell, body: RobotFootprint) -> Costmap:
+    """The costmap with the unknown ground that the vehicle covers at ``start`` taken for free: it stands there.
+
+    A lidar ahead of the vehicle's centre, or one that does not look backwards, never sees that ground before the vehicle moves.
+    (Nav2: ``footprint_clearing_enabled``.)
+    """
+    if not costs.holds(start):
+        return costs
+    window, covered = ground_below(costs, start, body)
+    own = costs.unknown[window] & (costs.cost[window] < 0.0) & covered
+    if not own.any():
+        return costs
+    cost, unknown, clearance = costs.cost.copy(), costs.unknown.copy(), costs.clearance[window]
+    price = np.where(clearance < body.radius, IMPASSABLE, _inflated(clearance, costs.resolution, body))
+    cost[window][own] = price[own]
+    unknown[window][own] = False
+    return replace(costs, cost=cost, unknown=unknown)
+
+
+def leads_away(costs: Costmap, start: Cell, body: RobotFootprint) -> bool:
+    """Whether passable cells lead from ``start`` to beyond the ground that the vehicle covers there."""
+    if not costs.holds(start):
+        return False
+    window, covered = ground_below(costs, start, body)
+    parts, _ = ndimage.label(costs.cost[window] >= 0.0)
+    mine = parts[start[0] - window[0].start, start[1] - window[1].start]
+    return bool(mine) and bool((parts[~covered] == mine).any())
+
+
+def ground_below(costs: Costmap, start: Cell, body: RobotFootprint) -> tuple[tuple[slice, slice], Mask]:
+    """A window (rows, columns) about a cell, and the mask of those of its cells that the vehicle covers there as it turns."""
+    reach = body.standing(costs.resolution) / costs.resolution
+    window = _around(start, ceil(reach) + 1)
+    row, column = (np.arange(size)[part] - at for size, part, at in zip(costs.cost.shape, window, start, strict=True))
+    covered: Mask = np.hypot(row[:, None], column) <= reach
+    return window, covered
+
+
+def widened(
+    cells: NDArray[np.int8], frame: Frame, body: RobotFootprint, place: tuple[float, float]
+) -> tuple[NDArray[np.int8], Frame] | None:
+    """An occupancy grid and its frame, widened by unknown cells to hold the vehicle at ``place`` [m, map frame].
+
+    None where the vehicle does not even touch the map: there is nothing to plan on from there.
+    """
+    resolution, (x, y) = frame
+    reach = ceil(body.standing(resolution) / resolution)
+    gaps = []
+    for offset, size in ((place[1] - y, cells.shape[0]), (place[0] - x, cells.shape[1])):
+        at = floor(min(max(offset / resolution, -FAR), FAR))
+        if not -reach <= at < size + reach:
+            return None
+        gaps.append((max(reach - at, 0), max(at + reach + 1 - size, 0)))
+    wider = np.pad(cells, gaps, constant_values=-1)
+    return wider, (resolution, (x - gaps[1][0] * resolution, y - gaps[0][0] * resolution))
+
+
+def _around(cell: Cell, n: int) -> tuple[slice, slice]:
+    """The window of ``n`` cells on every side of a cell, as far as the map has them."""
+    row, column = (slice(max(i - n, 0), i + n + 1) for i in cell)
+    return row, column
+
+
 def with_way_out(costs: Costmap, start: Cell, reach: float) -> Costmap:
     """The costmap with expensive but passable cells within ``reach`` [m] of a start that is too near to an obstacle."""
     if not costs.holds(start) or costs.cost[start] >= 0.0:
         return costs
-    n = int(np.ceil(reach / costs.resolution))
-    rows, columns = (slice(max(i - n, 0), i + n + 1) for i in start)
+    window = _around(start, ceil(reach / costs.resolution))
     cost = costs.cost.copy()
-    window = cost[rows, columns]
-    escape = (window < 0.0) & (costs.clearance[rows, columns] > 0.0) & ~costs.unknown[rows, columns]
-    window[escape] = ESCAPE_COST
+    cost[window][(cost[window] < 0.0) & (costs.clearance[window] > 0.0) & ~costs.unknown[window]] = ESCAPE_COST
     cost[start] = ESCAPE_COST
-    return Costmap(costs.resolution, costs.origin, costs.free, costs.unknown, costs.clearance, cost)
+    return replace(costs, cost=cost)
 
 
 ESCAPE_COST = 30.0

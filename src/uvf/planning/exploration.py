@@ -92,7 +92,7 @@ class Patrol:
 
     def choose(self, here: Point, costs: Costmap, ways: CostToGo) -> Point | None:
         """The goal [m, map frame] to go to; kept until ``reached`` or until no path leads there."""
-        if self.goal is not None and np.isfinite(ways.cost[costs.cell(*self.goal)]):
+        if self.goal is not None and costs.holds(cell := costs.cell(*self.goal)) and np.isfinite(ways.cost[cell]):
             return self.goal
         easy = np.isfinite(ways.cost) & (costs.cost >= 0.0) & (costs.cost < 1.5)
         if not easy.any():
@@ -101,8 +101,8 @@ class Patrol:
         if distance.max() < PATROL_REST:
             self._visited.clear()
             distance = np.where(easy, self._distance([here], costs), -1.0)
-        cell = np.array(np.unravel_index(int(np.argmax(distance)), distance.shape))
-        x, y = costs.points(cell[None])[0]
+        farthest = np.array(np.unravel_index(int(np.argmax(distance)), distance.shape))
+        x, y = costs.points(farthest[None])[0]
         self.goal = (float(x), float(y))
         return self.goal
 

@@ -6,7 +6,17 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.planning.costmap import Costmap, Frame, RobotFootprint, make_costmap, with_way_out
+from uvf.planning.costmap import (
+    Costmap,
+    Frame,
+    RobotFootprint,
+    ground_below,
+    leads_away,
+    make_costmap,
+    widened,
+    with_own_ground,
+    with_way_out,
+)
 from uvf.planning.search import Cell, CostToGo, astar
 from uvf.planning.smoothing import SPACING, length, smoothed
 
@@ -23,6 +33,9 @@ MOST_POINTS = 100_000
 """Of a path, as many as a message of it may hold."""
 FARTHEST = (MOST_POINTS - 2) * SPACING  # m of way
 TOO_LARGE = "the map is too large to plan on"
+OUTSIDE = "the vehicle is outside its map: its pose or the map is wrong"
+UNMAPPED = "the vehicle stands on ground that is not mapped, and no way leads from there to mapped ground; drive it there by hand"
+NO_WAY = "no way leads to the goal"
 NO_PLACE = "the goal is not a place: its coordinates must be finite"
 
 
@@ -69,13 +82,44 @@ class GlobalPlanner:
         self._cells = cells
         self.costs = make_costmap(cells, frame, self._body)
 
+    def stand(self, here: Point) -> bool:
+        """Widens the map by unknown ground where the vehicle at ``here`` [m] stands across its edge; whether that was so."""
+        costs = self.costs
+        if self._cells is None or costs is None or costs.holds(costs.cell(*here)):
+            return False
+        wider = widened(self._cells, (costs.resolution, costs.origin), self._body, here)
+        if wider is None:
+            return False
+        self.see(*wider)
+        return True
+
+    def shut_in(self, start: Point) -> str:
+        """Why the vehicle at ``start`` cannot drive anywhere; "" if it can."""
+        costs, ways = self.costs, self.ways(start)
+        if costs is None:
+            return self.missing
+        if ways is None:
+            return OUTSIDE
+        cell = costs.cell(*start)
+        window, covered = ground_below(costs, cell, self._body)
+        reached = np.isfinite(ways.cost) & (costs.cost >= 0.0)
+        reached[window] &= ~covered
+        if reached.any():
+            return ""
+        if costs.unknown[cell]:
+            return UNMAPPED
+        if costs.cost[cell] >= 0.0:
+            return "no way leads away from where the vehicle stands; drive it out by hand"
+        room = max(costs.clearance[cell], 0.0)
+        return f"the vehicle is {room:.2f} m from an obstacle, {self._body.radius:.2f} m are needed; drive it out by hand"
+
     def ways(self, start: Point) -> CostToGo | None:
         """Cost to go from ``start``, computed once per cell and map; None without a map or outside it."""
         if self.costs is None or not self.costs.holds(self.costs.cell(*start)):
             return None
         cell = self.costs.cell(*start)
         if self._ways is None or self._ways[0] != cell:
-            self._ways = cell, CostToGo(with_way_out(self.costs, cell, WAY_OUT).cost, cell)
+            self._ways = cell, CostToGo(self._leaving(self.costs, cell).cost, cell)
         return self._ways[1]
 
     def refusal(self, start: Point, goal: Point) -> str:
@@ -95,8 +139,10 @@ class GlobalPlanner:
         if costs.cost[cell] < 0.0:
             return f"the goal is {costs.clearance[cell]:.2f} m from an obstacle, {self._body.radius:.2f} m are needed"
         ways = self.ways(start)
-        if ways is None or not np.isfinite(ways.cost[cell]):
-            return "no way leads to the goal"
+        if ways is None:
+            return OUTSIDE
+        if not np.isfinite(ways.cost[cell]):
+            return self.shut_in(start) or NO_WAY
         if ways.cost[cell] * costs.resolution <= FARTHEST:  # a way costs no less than its length
             return ""
         return _too_far(costs.points(ways.to(cell)))
@@ -113,21 +159,28 @@ class GlobalPlanner:
             return PlannedPath(None, NO_PLACE)
         here = known.cell(*start)
         if not known.holds(here):
-            return PlannedPath(None, "the vehicle is outside its map")
+            return PlannedPath(None, OUTSIDE)
         there = known.cell(*goal)
         if not known.holds(there) and not allow_unknown:
             return PlannedPath(None, "the goal lies outside the map")
         rows, columns = known.cost.shape
         there = (min(max(there[0], 0), rows - 1), min(max(there[1], 0), columns - 1))
-        found = astar(with_way_out(known, here, WAY_OUT).cost, here, there)
+        found = astar(self._leaving(known, here).cost, here, there)
         if found is None:
-            return PlannedPath(None, "no way leads to the goal")
+            return PlannedPath(None, self.shut_in(start) or NO_WAY)
         points = known.points(found[0])
         points[0] = start
         if known.holds(known.cell(*goal)):
             points = np.vstack((points[:-1], goal)) if len(points) > 1 else np.array((start, goal))
         too_far = _too_far(points)
         return PlannedPath(None, too_far) if too_far else PlannedPath(smoothed(points, known, self._body.radius))
+
+    def _leaving(self, costs: Costmap, start: Cell) -> Costmap:
+        """The vehicle may leave a place that is too near to an obstacle, and drive off over unseen ground that it covers itself."""
+        opened = with_way_out(costs, start, WAY_OUT)
+        if leads_away(opened, start, self._body):
+            return opened
+        return with_way_out(with_own_ground(costs, start, self._body), start, WAY_OUT)
 
     def _costs(self, allow_unknown: bool) -> Costmap | None:
         if not allow_unknown or self.costs is None or self._cells is None:

@@ -334,3 +334,28 @@ def test_a_comfort_below_the_radius_does_not_spoil_the_costs():
     bench.service.params = PlannerParams(inflation_radius=0.13)
     assert bench.step(2).state == NavStatus.DRIVING
     assert np.isfinite(bench.service._navigator.costs.cost).all()
+
+
+@pytest.mark.parametrize(("here", "why"), [((0.5, 1.0), "on ground that is not mapped"), ((-3.0, 1.0), "outside its map")])
+def test_where_nothing_can_be_planned_nothing_counts_as_explored_and_it_is_said_once(here, why):
+    bench = Bench(explores=True)
+    cells = room(4.0, 3.0)
+    cells[:, :30] = -1
+    bench.grid = occupancy_grid(cells, 0.05, 0.0, 0.0, "v/map", 0.0)
+    bench.here = here
+    bench.step(20)
+    said = bench.said["nav_status"]
+    assert (said.state, said.explored) == (NavStatus.BLOCKED, 0.0)
+    assert why in said.reason
+    assert bench.events.count("explore: nothing can be planned") == 1
+    bench.here = (3.0, 1.0)
+    bench.step(20)
+    assert bench.said["nav_status"].explored > 0.0 and bench.state == NavStatus.DRIVING
+
+
+def test_a_lidar_ahead_of_the_vehicle_shows_enough_to_begin_with():
+    bench = Bench(explores=True)
+    cells = room(4.0, 3.0)
+    bench.service = PlannerService(START, 0.1, True, PlannerParams(), sensor_offset=0.2)
+    bench.grid = occupancy_grid(cells[:, 24:], 0.05, 1.2, 0.0, "v/map", 0.0)
+    assert bench.step().state == NavStatus.DRIVING

@@ -251,3 +251,12 @@ def test_distances_are_to_the_nearest_wall():
     distances, corner = map_.distances()
     middle = distances[int((0.0 - corner[1]) / 0.05), int((0.0 - corner[0]) / 0.05)]
     assert middle == pytest.approx(1.95, abs=0.06)
+
+
+def test_the_map_holds_the_place_of_a_vehicle_whose_lidar_is_ahead_of_it():
+    map_ = TileMap()
+    map_.follow([one_beam(2.0, Pose2(-0.1, -0.1, 0.0), origin=(0.32, 0.32))])
+    _, (x, y) = map_.cells()
+    assert x <= -0.1 and y <= -0.1
+    assert at(map_, -0.1, -0.1) == -1
+    assert 0 <= at(map_, 1.0, 0.22) < 50 < at(map_, 2.22, 0.22)

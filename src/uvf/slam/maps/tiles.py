@@ -8,7 +8,7 @@ counts more: what has gone vanishes in the next epoch at the latest, after about
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import cos, isfinite, sin
+from math import cos, floor, isfinite, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,21 +113,27 @@ class TileMap:
     def cells(self) -> tuple[Cells, tuple[float, float]]:
         """Occupancy (rows, columns), -1 unknown, 0..100 per cent occupied, and the corner (x, y) [m, map] of cell [0, 0].
 
-        Of the tiles in which anything is known; one unknown cell where there are none. Raises BadInput when that is too large.
+        Of the tiles in which anything is known or from which a keyframe was seen; one unknown cell where nothing is known.
+        Raises BadInput when that is too large.
         """
         self._fold()
         if not self._folded:
             return np.full((1, 1), -1, dtype=np.int8), (0.0, 0.0)
-        places = np.array([_place(key) for key in self._folded])
+        places = np.array([*map(_place, self._folded), *self._standing()])
         low = places.min(axis=0)
         rows, columns = ((places.max(axis=0) - low + 1) * TILE).tolist()
         if rows * columns > MOST_CELLS:
             size = f"{columns * self.resolution:.0f} x {rows * self.resolution:.0f} m"
             raise BadInput(f"a map of {size} has more than {MOST_CELLS} cells; look for a jump in the odometry, or take larger cells")
         out = np.full((rows, columns), -1, dtype=np.int8)
-        for (row, column), tile in zip((places - low) * TILE, self._folded.values(), strict=True):
+        for (row, column), tile in zip((places[: len(self._folded)] - low) * TILE, self._folded.values(), strict=True):
             out[row : row + TILE, column : column + TILE] = tile
         return out, (float(low[1] * TILE * self.resolution), float(low[0] * TILE * self.resolution))
+
+    def _standing(self) -> set[tuple[int, int]]:
+        """Rows and columns of the tiles that the vehicle has stood in: a lidar ahead of its centre sees nothing of them at first."""
+        side = TILE * self.resolution
+        return {(floor(d.map_from_base.y / side), floor(d.map_from_base.x / side)) for d in self._drawn.values()}
 
     def distances(self) -> tuple[Floats, tuple[float, float]]:
         """Distances (rows, columns) [m] from each cell's centre to the nearest occupied one's, and the corner [m, map] of cell [0, 0]."""
