@@ -11,10 +11,11 @@ from typing import NamedTuple
 from unittest import mock
 
 import pytest
+import typer
 import yaml
 
 from launch import settings
-from launch.cli import main
+from launch.cli import app, main
 from launch.scoring.scores import MEASURES
 from tests.runtime.modes import free_port
 from uvf.models.scenario import ROOT
@@ -260,3 +261,13 @@ def test_the_help_of_shift_says_degrees_and_keeps_what_stands_in_it():
 def test_the_help_of_bench_lists_the_groups():
     said = uvf("bench", "--help", COLUMNS="160").stdout
     assert all(name in said for name in settings.benchmark_names()) and "slow_lidar" in said
+
+
+def test_no_help_has_brackets_which_rich_would_take_for_markup_and_leave_out():
+    def helps(command, path):
+        yield path, command.help or ""
+        yield from ((f"{path} {p.name}", p.help or "") for p in command.params)
+        for name, each in getattr(command, "commands", {}).items():
+            yield from helps(each, f"{path} {name}")
+
+    assert [where for where, text in helps(typer.main.get_command(app), "uvf") if "[" in text] == []
