@@ -34,7 +34,7 @@ def log_info(log: LogArgument) -> None:
 @log_app.command("events")
 def log_events(log: RunArgument) -> None:
     """What happened, in order: time, vehicle, severity, text, cause."""
-    from launch.logs import event_lines
+    from launch.commands.log_contents import event_lines
 
     with bad_input_is_one_line():
         for line in event_lines(log):
@@ -48,7 +48,7 @@ def log_echo(
     count: Annotated[int, typer.Option("-n", min=0, help="Stop after so many; 0 = all.")] = 0,
 ) -> None:
     """Print the messages of a topic, as 'uvf topic echo' does."""
-    from launch.logs import message_lines
+    from launch.commands.log_contents import message_lines
 
     with bad_input_is_one_line():
         for line in message_lines(log, key, count):
