@@ -66,7 +66,7 @@ def _link(link: Link, tools: Tools) -> Link:
         tools.foreign.notes.add("looks taken from the collision shape, for the mesh is missing", link.name)
         visuals = collisions
     if link.collisions and not collisions and visuals:
-        tools.foreign.notes.add("collision shape taken from the looks, for its mesh is missing", link.name)
+        tools.foreign.notes.add("collision shape taken from the visual, because its mesh is missing", link.name)
         collisions = visuals
     return replace(link, visuals=visuals, collisions=collisions)
 

@@ -61,7 +61,7 @@ class CommandProperties(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
 
 
 class JointReading(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Where a joint is told from; the unit is the end of the property's name, of ``-norm`` times ``limit``."""
+    """JSBSim properties that a joint is read from; the unit is the suffix of the property's name, ``-norm`` counts in ``limit``."""
 
     position: Annotated[PropertyName | None, plain("JSBSim property of the joint's position; it ends in -rad, -deg or -norm.")] = None
     speed: Annotated[PropertyName | None, plain("JSBSim property of the joint's speed; it ends in -rpm or -rad_sec.")] = None

@@ -29,7 +29,7 @@ class FailsafeParams(Params, frozen=True):
     gnss_action: Annotated[Choice, Meta(description="then; land: down where it is, without a position")] = "land"
     airspeed_gap: Annotated[float, _meta(0.1, 1, "", "of trim_airspeed: measured against ground speed less wind")] = 0.25
     battery_low: Annotated[float, _meta(0, 0.9, "", "charge that is low")] = 0.15
-    battery_critical: Annotated[float, _meta(0, 0.9, "", "charge that is critical, and that the way home leaves")] = 0.07
+    battery_critical: Annotated[float, _meta(0, 0.9, "", "critical charge, and the reserve that the flight home must leave")] = 0.07
     low_action: Annotated[Choice, Meta(description="when the battery is low, or only just takes it home")] = "return"
     critical_action: Annotated[Choice, Meta(description="when the battery is critical")] = "land"
     emergency_charge: Annotated[float, _meta(0, 0.9, "", "charge that is an emergency")] = 0.05

@@ -34,9 +34,7 @@ class Gust(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     velocity: Annotated[Velocity, plain("Velocity of the air in the middle of the gust [m/s], ENU, pointing where the wind blows to.")]
-    length: Annotated[
-        float, Meta(ge=1, le=10_000), key("m", "Total length along the flight path, twice the gradient distance H of CS 25.341.")
-    ]
+    length: Annotated[float, Meta(ge=1, le=10_000), key("m", "Total length along the flight path, twice the distance H of CS 25.341.")]
     time: Annotated[
         Annotated[float, Meta(ge=0, le=1e6)] | None,
         key("s", "Simulation time at which every aircraft meets it; give either `time` or `place`."),
