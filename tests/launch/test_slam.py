@@ -126,7 +126,7 @@ def test_a_folder_of_results_that_is_none_is_told_before_the_run(tmp_path):
     [
         (("--method", "grpah"), "no SLAM method 'grpah'; did you mean 'graph'?"),
         (("--set", "keyframe_dist=1"), "did you mean 'keyframe_distance'?"),
-        (("--set", "keyframe_distance=far"), "keyframe_distance: Expected"),
+        (("--set", "keyframe_distance=far"), "keyframe_distance: 'far' is not a number"),
         (("--set", "keyframe_distance"), "write NAME=VALUE"),
         (("--relations", "missing.relations"), "missing.relations: No such file"),
         (("--vehicle", "burger"), "leave out --vehicle"),
