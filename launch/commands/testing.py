@@ -12,8 +12,7 @@ import typer
 from uvf.models.scenario import ROOT
 
 ON_THE_WALL = ["tests/browser", "tests/distributed"]
-"""Tests of real processes in real time: more than ``SYSTEMS`` of them at once would make each other late."""
-SYSTEMS = 2
+"""Tests of real processes in real time: two at once would make each other late, and together take as long."""
 
 
 def left_out() -> list[str]:
@@ -35,12 +34,11 @@ def data_folder() -> Path | None:
 def run_tests(arguments: Sequence[str]) -> int:
     """Runs pytest in processes of its own; returns the first exit code that is not 0.
 
-    Without arguments all tests: on every core those that have their own time, then those that live on the wall clock, two files at once.
+    Without arguments all tests: on every core those that have their own time, then by themselves those that live on the wall clock.
     """
     for line in left_out():
         typer.echo(f"uvf: {line}")
     own_time = ["-n", "auto", "--dist", "loadfile", *(f"--ignore={folder}" for folder in ON_THE_WALL)]
-    real_time = ["-n", str(SYSTEMS), "--dist", "loadfile", *ON_THE_WALL]
-    runs = [list(arguments)] if arguments else [own_time, real_time]
+    runs = [list(arguments)] if arguments else [own_time, ON_THE_WALL]
     codes = [subprocess.run([sys.executable, "-m", "pytest", *run], cwd=ROOT, check=False).returncode for run in runs]
     return next((code for code in codes if code), 0)
