@@ -8,6 +8,7 @@ import msgspec
 
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.process.quiet import c_output_discarded
+from uvf.runtime.process.subprocess_jobs import run_in_subprocess
 
 
 class Body(msgspec.Struct):
@@ -17,6 +18,10 @@ class Body(msgspec.Struct):
 
 def pid() -> int:
     return os.getpid()
+
+
+def pid_of_another() -> int:
+    return run_in_subprocess(pid)
 
 
 def heavier(body: Body, by: float) -> tuple[Body, list[str]]:

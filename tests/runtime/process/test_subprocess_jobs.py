@@ -113,3 +113,10 @@ def test_a_job_does_not_outlive_a_parent_that_is_killed(tmp_path):
         parent.kill()
     gone, _ = psutil.wait_procs([job], timeout=10)
     assert gone == [job]
+
+
+def test_one_that_has_a_process_of_its_own_ends_that_too():
+    below = run_in_subprocess(jobs.pid_of_another)
+    assert psutil.pid_exists(below)
+    subprocess_jobs._mine.worker.end()
+    assert not psutil.pid_exists(below)  # not even as one that nobody has waited for

@@ -30,6 +30,7 @@ WORDS = 200  # characters kept of the last thing said
 PATIENCE = 600.0  # s, after which a job is ended
 IDLE = 20.0  # s without a job after which the process is ended
 SPARE = 5.0  # s before that in which it gets no further job
+ENDING = 2.0  # s that one without a job has to end
 RESULT, REFUSAL = b"r", b"b"
 _PR_SET_PDEATHSIG = 1
 _mine = threading.local()
@@ -93,7 +94,7 @@ class _Worker:
             deadline = time.monotonic() + PATIENCE
             answer = self._read(int.from_bytes(self._read(8, deadline), "little"), deadline)
         except BaseException:
-            self.end()
+            self.end(patience=0.0)
             raise
         self._used = time.monotonic()
         return answer[:1], answer[1:]
@@ -117,15 +118,18 @@ class _Worker:
         lines = [line.strip() for line in self._said.read().decode(errors="replace").splitlines() if line.strip()]
         return f"{how}: {' '.join(lines)[-WORDS:]}" if lines else how
 
-    def end(self) -> None:
+    def end(self, patience: float = ENDING) -> None:
+        """Ends the process; within ``patience`` [s] it can end a process of its own before, which nobody else would wait for."""
         if self._parent != os.getpid() or self._said.closed:
             return
         atexit.unregister(self.end)
-        self._process.kill()
-        self._process.wait()
         assert self._process.stdin is not None
         with contextlib.suppress(BrokenPipeError):
             self._process.stdin.close()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(patience)
+        self._process.kill()
+        self._process.wait()
         os.close(self._answers)
         self._said.close()
 
