@@ -2,8 +2,9 @@
 
 import pytest
 
-from schemas.messages import Battery
+from schemas.messages import Battery, SpeedCommand, VehicleCommandRequest
 from services.autopilot.air.failsafes.monitor import FailsafeMonitor, VehicleCondition
+from services.autopilot.air.mission.orders import carry_out
 from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.modes.mission_flight import MissionMode
@@ -11,6 +12,9 @@ from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.modes.test_landing import on_final
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.servos import SERVOS
+from uvf.guidance.flight_plan import ItemKind, PlanItem
+from uvf.guidance.plan_follower import PlanFollower
+from uvf.guidance.route import Place
 
 STANDS = cruising(airspeed=0.5, ground_speed=0.1, height=0.4)
 ROLLS = cruising(airspeed=14.0, ground_speed=14.0, height=0.4)
@@ -78,3 +82,20 @@ def test_a_landing_goes_on_without_satellites_only_near_the_ground(height, goes_
     mode_manager.mode, mode_manager._phase = FlightMode.LAND, landing
     mode_manager.fly_blind(True)
     assert mode_manager.mode is (FlightMode.LAND if goes_on else FlightMode.HOLD)
+
+
+def test_on_the_approach_of_a_mission_the_speed_is_the_landings_and_the_fence_lets_it_down():
+    landing, now = on_final(375.0, 30.0)
+    landing.step(now, PARAMS, 0.02)
+    start = Start()
+    start.fly(now, 0.5)
+    manager = start.mode_manager
+    slower = VehicleCommandRequest(speed=SpeedCommand(speed=PARAMS.trim_airspeed), source="test")
+    manager.mode = FlightMode.MISSION
+    manager.navigator = PlanFollower([PlanItem(ItemKind.LAND, Place(0.0, 0.0, 0.0))])
+    assert carry_out(slower, manager, now, PARAMS) == ""
+    flight = MissionMode(manager.navigator, manager._field, manager.home, manager.context)
+    flight.part, manager._phase = landing, flight
+    assert "but for take-off and landing" in carry_out(slower, manager, now, PARAMS)
+    start.safety.step(start.t, VehicleCondition(now, 0.0, True), PARAMS, 0.02)
+    assert manager.fence.grounds
