@@ -42,7 +42,7 @@ class FlightController:
         if wish.firm:
             params = msgspec.structs.replace(params, climb_p=FIRM_CLIMB * params.climb_p, pitch_time=FIRM_PITCH * params.pitch_time)
         self._flap += min(max(wish.flap - self._flap, -FLAP_RATE * dt), FLAP_RATE * dt)
-        flap = self._lifting(wish.lift, Cycle(now, params, dt))
+        flap = self._lifting(wish.lift, now, params, dt)
         if self._flap > 0:
             params = msgspec.structs.replace(params, alpha_zero_lift=params.alpha_zero_lift - params.flap_alpha * self._flap)
         surfaces = self._fly(now, asked, params, dt)
@@ -50,12 +50,11 @@ class FlightController:
         self.airspeed = None if isinstance(asked, AttitudeSetpoint) else asked.airspeed
         return replace(surfaces, flap=flap, brake=wish.brake)
 
-    def _lifting(self, lift: float, cycle: Cycle) -> float:
+    def _lifting(self, lift: float, now: Estimate, params: AirParams, dt: float) -> float:
         """rad of flap that makes so much lift [m/s^2] beside what it makes already."""
-        params = cycle.params
-        if params.flap_alpha == 0:
+        if params.flap_alpha == 0 or lift == 0:
             return self._flap
-        moved = lift * params.alpha_per_load / (params.flap_alpha * cycle.eas**2)
+        moved = lift * params.alpha_per_load / (params.flap_alpha * Cycle(now, params, dt).eas ** 2)
         return min(max(self._flap + moved, 0.0), max(self._servos.flap.limit, self._flap))
 
     def _fly(
