@@ -10,7 +10,7 @@ from launch.vehicles.aircraft_rules import HEIGHT
 from launch.vehicles.aircraft_trial import level
 from services.sim_air.analysis.equilibrium import Condition, find
 from services.sim_air.analysis.linear import LinearModels, held_still, linearize
-from services.sim_air.analysis.performance import climb_rate, performance
+from services.sim_air.analysis.performance import climb_rate, glides, stall
 from services.sim_air.engine.airframe import Airframe
 from services.sim_air.engine.states import Held, InitialState
 from services.sim_air.engine.trim import Trim
@@ -98,9 +98,10 @@ def _turning(speed: float) -> InitialState:
 def _slowest(airframe: Airframe, body: AirBody, found: Mapping[str, float]) -> dict[str, float]:
     """The largest angle of attack: what the elevator balances gliding, within a margin to the stall; and the airspeed that goes with it."""
     with held_still(airframe):
-        can = performance(airframe, body, HEIGHT)
+        slowest = min(glides(airframe, body, HEIGHT), key=lambda c: c.airspeed)
+        stalls, _ = stall(airframe, body.trim_speed, HEIGHT)
     zero = found["alpha_zero_lift"]
-    alpha = _within(min(can.slowest.alpha, zero + (can.stall_alpha - zero) / MARGIN**2), 0.05, HIGHEST_ALPHA)
+    alpha = _within(min(slowest.alpha, zero + (stalls - zero) / MARGIN**2), 0.05, HIGHEST_ALPHA)
     stalled = (found["alpha_per_load"] * GRAVITY / (alpha - zero)) ** 0.5
     return {"alpha_max": alpha, "min_airspeed": max(SLOWEST * body.trim_speed, MARGIN * stalled)}
 

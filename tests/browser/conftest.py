@@ -29,6 +29,10 @@ FLAGS = [
 ]
 
 
+IS_READY = """(name) => document.querySelector('#gcs-bar .g-status')
+  && window.__viserSceneTree && name in window.__viserSceneTree.getState()"""
+
+
 class LiveStation:
     """The real service on the real page; ``moving`` off holds the vehicles still, ``living`` off the whole station."""
 
@@ -72,14 +76,12 @@ def browser():
 
 @contextlib.contextmanager
 def opened(browser, port, node, size=(1200, 700)):
-    """The page once ``node`` stands in its scene; an error in its script fails the tests that use it."""
+    """The page once its bar is there and ``node`` stands in its scene; an error in its script fails the tests that use it."""
     page = browser.new_page(viewport={"width": size[0], "height": size[1]})
     errors = []
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.goto(f"http://127.0.0.1:{port}/")
-    page.wait_for_function("(name) => window.__viserSceneTree && name in window.__viserSceneTree.getState()", arg=node, timeout=90_000)
-    with contextlib.suppress(Exception):
-        page.locator(".mantine-Notification-closeButton").click(timeout=5_000)
+    page.wait_for_function(IS_READY, arg=node, timeout=90_000)
     try:
         yield page
     finally:

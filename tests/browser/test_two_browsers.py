@@ -1,19 +1,35 @@
 """Two people, two real browsers: each sees the vehicle that he has chosen, and what he asks for goes there."""
 
+from contextlib import closing, contextmanager
+
 import pytest
 
 from schemas.messages import ArmRequest, ModeRequest
 from tests.browser.canvas import until
-from tests.browser.conftest import opened
+from tests.browser.conftest import opened, staged
+from tests.second_try import Shared
 from tests.services.gcs.scripted import UAV, UGV
 
 pytestmark = pytest.mark.timeout(240)
 
 
+@contextmanager
+def staged_for_two(browser):
+    """(station, page, other page)"""
+    with staged(browser) as (station, page), opened(browser, station.port, f"/vehicles/{UAV}/0", (900, 600)) as other:
+        yield station, page, other
+
+
+@pytest.fixture(scope="module")
+def stage(browser):
+    """One station and two pages for all tests."""
+    with closing(Shared(lambda: staged_for_two(browser))) as stage:
+        yield stage
+
+
 @pytest.fixture
-def other(browser, station):
-    with opened(browser, station.port, f"/vehicles/{UAV}/0", (900, 600)) as other:
-        yield other
+def other(staging):
+    return staging[2]
 
 
 def choose(page, vehicle):

@@ -41,19 +41,14 @@ def performance(airframe: Airframe, body: AirBody, altitude: float) -> Performan
 
     Gliding is with the motor off. What the elevator cannot balance is left out.
     """
-    limit = body.controls.elevator.limit
-    glides = list(_sweep(airframe, Condition(body.trim_speed, altitude, throttle=0.0, climb=-0.1), limit))
-    if not glides:
-        raise BadInput(f"{body.model}: no steady glide at {altitude:g} m was found")
-    climbs = list(_sweep(airframe, Condition(body.trim_speed, altitude, throttle=1.0, climb=0.1), limit))
-    if (stop := find(airframe, replace(glides[-1], elevator=-limit), ("elevator", "throttle"))) is not None:
-        glides.append(stop)
-    slowest = min(glides, key=lambda c: c.airspeed)
-    alpha, stall_speed = _stall(airframe, body.trim_speed, altitude)
+    flown = glides(airframe, body, altitude)
+    climbs = list(_sweep(airframe, Condition(body.trim_speed, altitude, throttle=1.0, climb=0.1), body.controls.elevator.limit))
+    slowest = min(flown, key=lambda c: c.airspeed)
+    alpha, stall_speed = stall(airframe, body.trim_speed, altitude)
     power, cruise = min(_level(airframe, body, [slowest.airspeed * s for s in POWER_SPEEDS], altitude), key=lambda found: found[0])
     return Performance(
-        glide=max(glides, key=lambda c: c.climb),
-        sink=max(glides, key=climb_rate),
+        glide=max(flown, key=lambda c: c.climb),
+        sink=max(flown, key=climb_rate),
         slowest=slowest,
         stall_speed=stall_speed,
         stall_alpha=alpha,
@@ -62,6 +57,19 @@ def performance(airframe: Airframe, body: AirBody, altitude: float) -> Performan
         power=power,
         endurance=lasts(body.battery, power) if body.battery else None,
     )
+
+
+def glides(airframe: Airframe, body: AirBody, altitude: float) -> list[Condition]:
+    """Steady glides at ``altitude`` [m AMSL], motor off, of an airframe that is held still, up to the elevator's stop.
+
+    Raises BadInput when there is none.
+    """
+    limit = body.controls.elevator.limit
+    found = list(_sweep(airframe, Condition(body.trim_speed, altitude, throttle=0.0, climb=-0.1), limit))
+    if not found:
+        raise BadInput(f"{body.model}: no steady glide at {altitude:g} m was found")
+    stop = find(airframe, replace(found[-1], elevator=-limit), ("elevator", "throttle"))
+    return found if stop is None else [*found, stop]
 
 
 def climb_rate(flight: Condition) -> float:
@@ -84,8 +92,11 @@ def _sweep(airframe: Airframe, begin: Condition, limit: float) -> Iterator[Condi
             yield found
 
 
-def _stall(airframe: Airframe, airspeed: float, altitude: float) -> tuple[float, float]:
-    """Angle of attack [rad] of the largest lift, and the speed [m/s] at which that carries the weight."""
+def stall(airframe: Airframe, airspeed: float, altitude: float) -> tuple[float, float]:
+    """Angle of attack [rad] of the largest lift, and the speed [m/s] at which that carries the weight.
+
+    airspeed: at which the lift is measured [m/s]; altitude: [m AMSL]. The airframe is held still, motor off, surfaces at zero.
+    """
     lifts = [_lift(airframe, airspeed, altitude, alpha) for alpha in STALL_ALPHAS]
     best = int(np.argmax(lifts))
     return STALL_ALPHAS[best], airspeed * math.sqrt(GRAVITY / lifts[best])

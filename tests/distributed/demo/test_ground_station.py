@@ -1,7 +1,6 @@
 """MAVSDK 4.1 against the whole system: both vehicles, positions, a mission flown by the real autopilot."""
 
 import math
-from contextlib import closing, contextmanager
 
 import pytest
 from mavsdk import ComponentType, Configuration, Mavsdk
@@ -10,9 +9,7 @@ from mavsdk.plugins.mission import Mission, MissionItem, MissionPlan
 from mavsdk.plugins.telemetry import FlightMode, Telemetry
 
 from schemas import topics
-from tests.distributed.system import System
 from tests.distributed.test_mavsdk import wait
-from tests.second_try import Shared
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.messages.convert import array
@@ -22,34 +19,26 @@ DEGREE = math.radians(1.0)
 POINTS = [(150.0, -150.0, 70.0), (250.0, 0.0, 70.0), (100.0, 100.0, 80.0)]  # m: east, north, up
 
 
-@contextmanager
-def staged(runs):
-    """(system, what MAVSDK found of its vehicles by number)"""
-    with System(runs) as system, Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION)) as sdk:
-        sdk.add_any_connection(f"udpin://127.0.0.1:{system.mavlink}")
-        wait(lambda: len(sdk.get_systems()) == 2, 30.0)
-        yield system, {each.get_system_id(): each for each in sdk.get_systems()}
+@pytest.fixture(scope="module")
+def sdk():
+    with Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION)) as sdk:
+        yield sdk
 
 
 @pytest.fixture(scope="module")
-def stages(tmp_path_factory):
-    with closing(Shared(lambda: staged(tmp_path_factory.mktemp("runs")))) as shared:
-        yield shared
+def ports():
+    """Those at which MAVSDK listens: a second try has a system of its own."""
+    return set()
 
 
 @pytest.fixture
-def stage(stages, request):
-    return stages.for_test(request)
-
-
-@pytest.fixture
-def system(stage):
-    return stage[0]
-
-
-@pytest.fixture
-def vehicles(stage):
-    return stage[1]
+def vehicles(system, sdk, ports):
+    """What MAVSDK has found, by number."""
+    if system.mavlink not in ports:
+        sdk.add_any_connection(f"udpin://127.0.0.1:{system.mavlink}")
+        ports.add(system.mavlink)
+    wait(lambda: len(sdk.get_systems()) == 2, 30.0)
+    return {each.get_system_id(): each for each in sdk.get_systems()}
 
 
 @pytest.fixture(scope="module")

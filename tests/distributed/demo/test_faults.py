@@ -4,28 +4,15 @@ import os
 import signal
 import subprocess
 import sys
-from contextlib import closing
 
 import numpy as np
 import pytest
 
 from schemas import topics
 from tests.distributed.system import System
-from tests.second_try import Shared
 from uvf.models.scenario import ROOT
 from uvf.runtime.log.reading import read_log
 from uvf.runtime.messages.convert import array
-
-
-@pytest.fixture(scope="module")
-def systems(tmp_path_factory):
-    with closing(Shared(lambda: System(tmp_path_factory.mktemp("runs")))) as shared:
-        yield shared
-
-
-@pytest.fixture
-def system(systems, request):
-    return systems.for_test(request)
 
 
 def position(system, owner):
@@ -150,7 +137,7 @@ def test_the_clock_never_runs_ahead_and_a_killed_simulator_starts_a_new_epoch(sy
 
 
 def test_it_ends_by_itself_and_leaves_a_whole_log(tmp_path):
-    with System(tmp_path, "--for", "25") as running:
+    with System(tmp_path, "--for", "8") as running:
         running.popen.wait(timeout=90)
     assert running.popen.returncode == 0
     keys = {s.key for s in read_log(next(tmp_path.glob("latest/log-*.mcap")))}
