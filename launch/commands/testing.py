@@ -43,7 +43,8 @@ def run_tests(arguments: Sequence[str]) -> int:
         typer.echo(f"uvf: {line}")
     if arguments:
         return _pytest(arguments).wait()
-    own_time = _pytest(["-n", "auto", "--dist", "loadfile", f"--ignore={PROCESSES}", f"--ignore={BROWSER}"], aside=True)
+    own_time = _pytest(["-n", "auto", "--dist", "loadfile", f"--ignore={PROCESSES}", f"--ignore={BROWSER}"])
+    step_aside(own_time.pid)
     with tempfile.TemporaryFile() as said:
         codes = [_pytest([PROCESSES], said).wait()]
         said.seek(0)
@@ -52,14 +53,13 @@ def run_tests(arguments: Sequence[str]) -> int:
     return next((code for code in codes if code), 0)
 
 
-def _pytest(arguments: Sequence[str], output: IO[bytes] | None = None, aside: bool = False) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "pytest", *arguments]
-    return subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=output, preexec_fn=step_aside if aside else None)
+def _pytest(arguments: Sequence[str], output: IO[bytes] | None = None) -> subprocess.Popen[bytes]:
+    return subprocess.Popen([sys.executable, "-m", "pytest", *arguments], cwd=ROOT, stdout=output, stderr=output)
 
 
-def step_aside() -> None:
-    """From now on this process has only the time that no other wants."""
-    if hasattr(os, "SCHED_IDLE"):
-        os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+def step_aside(process: int) -> None:
+    """A process, and whatever it will start, has only the time that no other wants; process: its id."""
+    if hasattr(os, "sched_setscheduler"):
+        os.sched_setscheduler(process, os.SCHED_IDLE, os.sched_param(0))
     else:
-        os.nice(19)
+        os.setpriority(os.PRIO_PROCESS, process, 19)

@@ -4,8 +4,8 @@ from collections import defaultdict, deque
 
 from schemas import topics
 from schemas.messages import Event, Mode, NavStatus, VehicleStatus
-from services.gcs.state.enum_names import enum_name
 from uvf.runtime.bus.interface import Bus, Sample
+from uvf.runtime.messages.enum_names import enum_name
 
 KEPT = 5  # events of a vehicle
 

@@ -135,7 +135,9 @@ def test_parameters_are_read_and_set_while_running():
         assert (param.name, param.min, param.max, param.unit) == ("gain", 0, 10, "1/s")
         assert ask(name="gain", value=json.dumps(2.5)).accepted
         assert run.toys.one("pilot.alpha").params.gain == 2.5
-        assert not ask(name="gain", value="11").accepted
+        assert ask(name="gain", value="11").reason == "gain: 11 is above 10"
+        assert ask(name="gain", value='"x"').reason == "gain: 'x' is not a number; give it without a unit"
+        assert "not a value in JSON" in ask(name="gain", value="x").reason
         assert "did you mean 'gain'" in ask(name="gian", value="1").reason
         assert run.toys.one("pilot.alpha").params.gain == 2.5
 

@@ -6,8 +6,8 @@ from typing import Any
 from google.protobuf.message import Message
 
 from schemas.messages import ArmRequest, CancelRequest, GoalRequest, Mode, ModeRequest
-from services.gcs.state.enum_names import enum_name
 from services.gcs.state.state import VehicleModel
+from uvf.runtime.messages.enum_names import enum_name
 
 MODES: Mapping[str, Mapping[str, Any]] = {
     "ground": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Manual": Mode.MODE_MANUAL},

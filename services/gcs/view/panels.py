@@ -5,13 +5,13 @@ from math import atan2, degrees, hypot, pi
 from pathlib import Path
 
 from schemas.messages import MissionProgress, Mode, NavStatus
-from services.gcs.state.enum_names import enum_name
 from services.gcs.state.state import Model, VehicleModel, link_of
 from services.gcs.state.wording import mode_name
 from services.gcs.view.instruments import DriveInstruments, FlightInstruments, drive_panel, primary_flight_display
 from services.gcs.view.markup import Html, html, joined
 from uvf.maths.rotations import to_euler
 from uvf.runtime.messages.convert import wxyz
+from uvf.runtime.messages.enum_names import enum_name
 
 HELP = Path(__file__).with_name("help.html")
 

@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 
 from schemas.messages import Event, Process
-from services.gcs.state.enum_names import enum_name
 from services.gcs.state.event_log import EventHistory, EventLine
 from services.gcs.state.state import Model
 from services.gcs.state.vitals import Vitals
 from services.gcs.view.markup import Html, html, joined
 from services.gcs.view.status import SEVERITY, clock_text
+from uvf.runtime.messages.enum_names import enum_name
 
 SHOWN, OF_OPERATOR = 40, 6  # lines of each kind
 FILTERS = {"routine": "All", "notice": "No routine", "warning": "Warnings"}

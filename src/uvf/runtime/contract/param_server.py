@@ -10,6 +10,7 @@ from schemas import topics
 from schemas.messages import Param, ParamReply, ParamRequest
 from uvf.models.keys import meta_of, unit_of
 from uvf.models.params import Params
+from uvf.models.refused_value import in_words
 from uvf.models.yaml_data import nearest
 from uvf.runtime.bus.interface import Query
 from uvf.runtime.bus.wire import Malformed, decode
@@ -67,8 +68,11 @@ class ParamServer:
         if request.value:
             try:
                 self._set(request.name, request.value)
-            except (msgspec.ValidationError, msgspec.DecodeError) as error:
-                return ParamReply(accepted=False, reason=f"{request.name}: {error}")
+            except msgspec.ValidationError as error:
+                return ParamReply(accepted=False, reason=f"{request.name}: {self._in_words(request, str(error))}")
+            except msgspec.DecodeError:
+                reason = f"{request.name}: not a value in JSON; write a number, true, false, or text in double quotes"
+                return ParamReply(accepted=False, reason=reason)
             except RecursionError:
                 return ParamReply(accepted=False, reason=f"{request.name}: nested too deeply")
         wanted = [request.name] if request.name else fields
@@ -78,6 +82,14 @@ class ParamServer:
         data = msgspec.to_builtins(self._service.params)
         data[name] = msgspec.json.decode(value)
         self.take_up(msgspec.convert(data, type(self._service.params)))
+
+    def _in_words(self, request: ParamRequest, said: str) -> str:
+        """What msgspec ``said`` about the value, as files of data are answered too."""
+        why, _, place = said.partition(" - at `")
+        if place.removesuffix("`") != f"$.{request.name}":
+            return said
+        hint = get_type_hints(type(self._service.params), include_extras=True)[request.name]
+        return in_words(msgspec.json.decode(request.value), hint, why)
 
     def take_up(self, params: Params) -> None:
         """Sets all parameters, to those of an instance before this one."""

@@ -20,11 +20,11 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services import gcs
-from services.gcs.state.enum_names import enum_name
 from services.gcs.state.wording import mode_name
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV, UGV
 from uvf.runtime.bus import wire
+from uvf.runtime.messages.enum_names import enum_name
 
 UNKNOWN = 99
 
