@@ -5,6 +5,7 @@ tests needed it and why (FLAKED): each is a fault to be looked for, of the test 
 Hypothesis tries the same examples each time.
 """
 
+import gc
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,12 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if any(item.path.is_relative_to(folder) for folder in WALL):
             item.add_marker(pytest.mark.flaky(reruns=1))
+
+
+def pytest_collection_finish(session):
+    """What has been collected stays: no garbage collection looks through it again."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_terminal_summary(terminalreporter):
