@@ -3,12 +3,12 @@
 import math
 from collections.abc import Iterator
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin
 
 import msgspec
 from msgspec import Meta
 
-from uvf.models.keys import meta_of, unit_of
+from uvf.models.keys import hints_of, meta_of, unit_of
 
 HEAD = ("| key | value | unit | default | limits | meaning |", "|---|---|---|---|---|---|")
 NO_LIMIT, NEXT_TO_ZERO = 1e9, 1e-9
@@ -31,7 +31,7 @@ class Key(NamedTuple):
 
 def keys_of(struct: type[msgspec.Struct]) -> list[Key]:
     """The keys of a struct in the order of its definition."""
-    hints = get_type_hints(struct, include_extras=True)
+    hints = hints_of(struct)
     return [Key(f.name, hints[f.name], meta_of(hints[f.name]), _default(f)) for f in msgspec.structs.fields(struct)]
 
 

@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
 from launch.vehicles.aircraft_rules import aircraft_faults
 from uvf.models.checks.body_rules import body_faults, body_notes
+from uvf.models.keys import hints_of
 from uvf.models.urdf.model import read_urdf
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.urdf.rules import model_faults, wheel_faults
@@ -66,7 +67,7 @@ def _section_faults(folder: Path) -> Iterator[str]:
         return
     sections = [((key,), data[key], type_) for key, type_ in SECTIONS.items() if key in data] if isinstance(data, dict) else []
     sensors = data.get("sensors") if isinstance(data, dict) else None
-    hints = get_type_hints(Sensors, include_extras=True)
+    hints = hints_of(Sensors)
     known = {k: v for k, v in sensors.items() if k in hints} if isinstance(sensors, dict) else {}
     for keys, value, type_ in (*sections, *((("sensors", k), v, hints[k]) for k, v in known.items())):
         if isinstance(value, dict) and ("preset" in value or "variant_of" in data):

@@ -3,7 +3,8 @@
 ``x: Annotated[Metres, key("m", "East of the world's origin.")]``. A number without a unit says so by ``""``.
 """
 
-from typing import Annotated, Any, get_args, get_origin
+import functools
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 from msgspec import UNSET, Meta
 
@@ -28,6 +29,12 @@ def in_unit(unit: str) -> Meta:
 def name_like(pattern: str, longest: int, allowed: str) -> Meta:
     """Limits of a name: its pattern, its most letters, and the pattern in words, for who is refused."""
     return Meta(pattern=rf"^{pattern}\Z", max_length=longest, extra_json_schema={ALLOWED: allowed})
+
+
+@functools.cache
+def hints_of(struct: type) -> dict[str, Any]:
+    """The type of each key of a struct by its name, ``Annotated`` as it is written."""
+    return get_type_hints(struct, include_extras=True)
 
 
 def meta_of(hint: Any) -> Meta:

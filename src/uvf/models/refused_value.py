@@ -3,9 +3,9 @@
 import math
 import re
 from types import NoneType, UnionType
-from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Union, get_args, get_origin
 
-from uvf.models.keys import allowed_in, meta_of, unit_of
+from uvf.models.keys import allowed_in, hints_of, meta_of, unit_of
 
 SHOWN = 60  # letters of a text
 LARGEST = 1e300  # that is written as a number
@@ -49,7 +49,7 @@ def in_words(data: Any, hint: Any, said: str) -> str:
 
 
 def _missing(name: str, struct: Any) -> str:
-    meta = meta_of(get_type_hints(struct, include_extras=True)[name])
+    meta = meta_of(hints_of(struct)[name])
     sentence = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", meta.description or "").replace("`", "")
     sentence = re.split(r"[.;:] |\.$", sentence)[0]
     if not sentence:

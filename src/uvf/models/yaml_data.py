@@ -1,20 +1,21 @@
 """Typed data from YAML: unknown keys and wrong values end in one line that names the place and the mend."""
 
 import difflib
-import functools
 import itertools
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from types import UnionType
-from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
 
 import msgspec
 import yaml
 from yaml.composer import Composer
 from yaml.constructor import SafeConstructor
+from yaml.resolver import Resolver
 
+from uvf.models.keys import hints_of
 from uvf.models.refused_value import in_words
 from uvf.models.renamed import new_name
 
@@ -55,7 +56,7 @@ class FileLocation(NamedTuple):
         return text
 
 
-class _Rules(SafeConstructor):
+class _Rules(SafeConstructor, Resolver):
     """YAML 1.2 where 1.1 surprises: ``1e3`` is a number, and a key given twice is an error. Aliases cannot make a small file huge."""
 
     def get_single_node(self) -> Any:
@@ -75,6 +76,9 @@ class _Rules(SafeConstructor):
         return super().construct_mapping(node, deep)
 
 
+_Rules.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+\Z"), list("-+0123456789."))
+
+
 class _Loader(_Rules, Composer, yaml.CSafeLoader):
     """Parses in C, which is five times as fast, and composes in Python: libyaml's own composer ends the process at a deep nesting."""
 
@@ -85,10 +89,6 @@ class _Loader(_Rules, Composer, yaml.CSafeLoader):
 
 class _ExactLoader(_Rules, yaml.SafeLoader):
     """Parses in Python: it names the line of a mistake where libyaml names the one behind it."""
-
-
-for _each in (_Loader, _ExactLoader):
-    _each.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+\Z"), list("-+0123456789."))
 
 
 def _count(node: Any, counts: dict[int, int]) -> int:
@@ -187,11 +187,6 @@ def _check(data: Any, hint: Any, place: FileLocation) -> None:
         raise BadInput(f"{place}: {in_words(data, hint, str(error).partition(' - at `')[0])}") from error
 
 
-@functools.cache
-def _hints(struct: type) -> dict[str, Any]:
-    return get_type_hints(struct, include_extras=True)
-
-
 def _parts(data: Any, hint: Any, place: FileLocation) -> Iterator[tuple[Any, Any, Any]]:
     """(key, value, type) of what ``data`` consists of, as far as it has the shape of its type."""
     origin = get_origin(hint)
@@ -201,7 +196,7 @@ def _parts(data: Any, hint: Any, place: FileLocation) -> Iterator[tuple[Any, Any
         if data is not None:
             yield from _parts(data, next(a for a in get_args(hint) if a is not type(None)), place)
     elif isinstance(data, dict) and isinstance(hint, type) and issubclass(hint, msgspec.Struct):
-        hints = _hints(hint)
+        hints = hints_of(hint)
         for key, value in data.items():
             if key not in hints:
                 raise BadInput(f"{place.at(key)}: unknown key '{key}'; {nearest(str(key), hints, KEYS_LISTED)}")

@@ -2,9 +2,9 @@
 
 from collections.abc import Set
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, get_args, get_origin
 
-from uvf.models.keys import meta_of, unit_of
+from uvf.models.keys import hints_of, meta_of, unit_of
 from uvf.models.params import Params
 from uvf.models.vehicle.failsafe_params import FailsafeParams
 
@@ -27,7 +27,7 @@ class Own:
 
 def own_params(params: Params, fixed: Set[str]) -> dict[str, Own]:
     """The parameters of a set by name. Raises TypeError for one that is neither a number within limits nor a choice."""
-    hints = get_type_hints(type(params), include_extras=True)
+    hints = hints_of(type(params))
     return {name: _described(name, hints[name], READ_ONCE if name in fixed else "") for name in params.__struct_fields__}
 
 

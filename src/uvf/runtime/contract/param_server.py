@@ -2,13 +2,13 @@
 
 from collections import deque
 from collections.abc import Callable, Iterator
-from typing import Any, get_type_hints
+from typing import Any
 
 import msgspec
 
 from schemas import topics
 from schemas.messages import Param, ParamReply, ParamRequest
-from uvf.models.keys import meta_of, unit_of
+from uvf.models.keys import hints_of, meta_of, unit_of
 from uvf.models.params import Params
 from uvf.models.refused_value import in_words
 from uvf.models.yaml_data import nearest
@@ -88,7 +88,7 @@ class ParamServer:
         why, _, place = said.partition(" - at `")
         if place.removesuffix("`") != f"$.{request.name}":
             return said
-        hint = get_type_hints(type(self._service.params), include_extras=True)[request.name]
+        hint = hints_of(type(self._service.params))[request.name]
         return in_words(msgspec.json.decode(request.value), hint, why)
 
     def take_up(self, params: Params) -> None:
@@ -96,7 +96,7 @@ class ParamServer:
         self._service.params = self.set_params = params
 
     def _describe(self, name: str) -> Param:
-        hints = get_type_hints(type(self._service.params), include_extras=True)
+        hints = hints_of(type(self._service.params))
         param = Param(name=name, value=msgspec.json.encode(getattr(self._service.params, name)).decode())
         param.min, param.max = float("-inf"), float("inf")
         param.read_only = name in self._service.fixed_params
