@@ -87,7 +87,7 @@ def sector(begin: float, end: float) -> int:
     """Bits of all headings from ``begin`` anticlockwise to ``end`` [rad], both counted."""
     first, n = heading_bin(begin), round(((end - begin) % tau) / STEP)
     if end - begin >= tau - pi / HEADINGS:
-        return 2**HEADINGS - 1
+        return (1 << HEADINGS) - 1
     bits = 0
     for k in range(n + 1):
         bits |= 1 << ((first + k) % HEADINGS)
