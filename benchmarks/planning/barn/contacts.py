@@ -66,9 +66,7 @@ class Contacts:
         """Whether the robot at ``pose`` (3,) x, y [m], yaw [rad] touches anything. movers: (n, 3) x, y, radius [m] now."""
         half_yaw = pose[2] / 2
         turned = (0.0, 0.0, float(np.sin(half_yaw)), float(np.cos(half_yaw)))
-        pybullet.resetBasePositionAndOrientation(
-            self._robot, (float(pose[0]), float(pose[1]), 0.0), turned, physicsClientId=self._client
-        )
+        pybullet.resetBasePositionAndOrientation(self._robot, (float(pose[0]), float(pose[1]), 0.0), turned, physicsClientId=self._client)
         self._move(pose, movers)
         pybullet.performCollisionDetection(physicsClientId=self._client)
         found = pybullet.getContactPoints(bodyA=self._robot, physicsClientId=self._client)

@@ -1,21 +1,18 @@
 """The seam between the simulation and what drives in it: what a controller is told once, what it gets at 20 Hz, what it answers.
 
-A navigation stack joins the benchmark by an entry in ``CONTROLLERS``; the simulation knows it by that name alone, makes one for
-each run, and never tells it the true pose or the world. Those in ``CHECKS`` are told both: they try the simulation, not themselves.
+A navigation stack joins the benchmark by an entry in ``registry.CONTROLLERS``; the simulation knows it by that name alone, makes
+one for each run, and never tells it the true pose or the world.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.planning.barn import checks
 from benchmarks.planning.barn.worlds import World
 from uvf.maths.kinematics import Twist
 from uvf.maths.se2 import Pose2
-from uvf.models.yaml_data import BadInput, nearest
 
 Floats = NDArray[np.float64]
 
@@ -73,36 +70,8 @@ class Controller(Protocol):
 
 @dataclass(frozen=True)
 class Briefing:
-    """What a controller is made from. seed: for its random numbers; world: None but for those in CHECKS."""
+    """What a controller is made from. seed: for its random numbers; world: None but for ``registry.CHECKS``."""
 
     robot: Robot
     seed: int
     world: World | None = None
-
-
-ControllerMaker = Callable[[Briefing], Controller]
-
-CONTROLLERS: dict[str, ControllerMaker] = {}
-"""Navigation stacks by name; the first one is the default."""
-
-CHECKS: dict[str, ControllerMaker] = {
-    "path": lambda briefing: checks.PathFollower(_told(briefing)),
-    "straight": lambda briefing: checks.Straight(),
-}
-"""Controllers that try the simulation. They get the true pose and velocity as their odometry."""
-
-
-def _told(briefing: Briefing) -> World:
-    if briefing.world is None:
-        raise ValueError("briefing.world: None; a controller of CHECKS is told the world")
-    return briefing.world
-
-
-def known_controller(name: str | None) -> str:
-    """The name of a controller that is there; None stands for the default. Raises BadInput."""
-    known = [*CONTROLLERS, *CHECKS]
-    if name is None:
-        return known[0]
-    if name not in known:
-        raise BadInput(f"no controller '{name}'; {nearest(name, known)}")
-    return name

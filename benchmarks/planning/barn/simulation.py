@@ -11,15 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.planning.barn.contacts import Contacts
-from benchmarks.planning.barn.controllers import CHECKS, CONTROLLERS, HZ, Briefing, Controller
+from benchmarks.planning.barn.controllers import HZ, Briefing, Controller
 from benchmarks.planning.barn.jackal import JACKAL, SCANNER, Drive
 from benchmarks.planning.barn.odometry import Odometry
+from benchmarks.planning.barn.registry import CHECKS, CONTROLLERS
 from benchmarks.planning.barn.scanning import clearance_to_boxes, clearance_to_discs, see_discs, see_segments, sides
 from benchmarks.planning.barn.scoring import Ending, Referee, score
 from benchmarks.planning.barn.worlds import World
 from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import wrap
-from uvf.maths.se2 import Pose2, compose, inverse
+from uvf.maths.se2 import Pose2, compose, inverse, transform
 
 Floats = NDArray[np.float64]
 
@@ -125,64 +126,78 @@ class Driver:
         return Twist(float(linear), float(angular))
 
 
+class Simulation:
+    """A run that goes on step by step."""
+
+    def __init__(self, world: World, trial: Trial) -> None:
+        phases, seeds, odometry, self._noise = np.random.default_rng([trial.seed, trial.number, *world.name.encode()]).spawn(4)
+        self._world, self._trial = world, trial
+        self._surroundings = Surroundings(world, float(phases.uniform(0.0, PHASES)))
+        self._driver = Driver(world, trial, seeds)
+        self._drive, self._odometry = Drive(world.start, DT), Odometry(READ * DT, odometry)
+        self._contacts = Contacts(world, JACKAL)
+        self._referee = Referee(world.start[:2], world.goal)
+        self._waiting = self._command = STOP
+        self._clearance, self._step = np.inf, 0
+        self._ranges = np.zeros(SCANNER.beams)
+
+    @property
+    def t(self) -> float:
+        """Time of the run [s]."""
+        return self._step * DT
+
+    def step(self) -> Ending | None:
+        """Looks whether the run has ended; if not, moves on by ``DT``."""
+        pose = self._drive.pose
+        self._surroundings.move(self.t)
+        self._clearance = min(self._clearance, self._surroundings.clearance(pose))
+        touches = self._contacts.touches(pose, self._surroundings.movers)
+        if ending := self._referee.look(self.t, (float(pose[0]), float(pose[1])), touches):
+            return ending
+        if self._step % READ == 0 and self._step:
+            self._odometry.read(self._drive.rolled, float(pose[2]) - self._world.start.yaw)
+        if self._step % DECIDE == 0:
+            self._ranges = self._surroundings.scan(pose, self._noise)
+            self._waiting = self._driver.command(self.t, self._ranges.copy(), self._drive, self._odometry)
+        if self._step % DECIDE == LATE:
+            self._command = self._waiting
+        self._drive.step(self._command)
+        self._step += 1
+        return None
+
+    def result(self, ending: Ending) -> Run:
+        """What became of the run that has ended so."""
+        time_taken, optimal, driver = self._referee.time(self.t), self._world.optimal_time, self._driver
+        return Run(
+            world=self._world.name,
+            trial=self._trial.number,
+            ending=ending,
+            time=time_taken,
+            score=None if optimal is None else score(ending, time_taken, optimal),
+            clearance=float(self._clearance),
+            end=self._drive.pose.copy(),
+            true=np.array(driver.true).reshape(-1, 3),
+            believed=np.array(driver.believed).reshape(-1, 3),
+            seen=_seen(driver, self._ranges),
+            movers=self._surroundings.movers,
+            mean_ms=float(np.mean(driver.ms)) if driver.ms else 0.0,
+            worst_ms=max(driver.ms, default=0.0),
+        )
+
+    def close(self) -> None:
+        """Ends the engine."""
+        self._contacts.close()
+
+
 def run(world: World, trial: Trial) -> Run:
     """Makes one run."""
-    generators = np.random.default_rng([trial.seed, trial.number, *world.name.encode()]).spawn(4)
-    phase = float(generators[0].uniform(0.0, PHASES))
-    surroundings = Surroundings(world, phase)
-    driver = Driver(world, trial, generators[1])
-    drive, odometry = Drive(world.start, DT), Odometry(READ * DT, generators[2])
-    contacts = Contacts(world, JACKAL)
+    simulation = Simulation(world, trial)
     try:
-        return _run(world, trial, (surroundings, contacts, generators[3]), (drive, odometry, driver))
+        while (ending := simulation.step()) is None:
+            pass
+        return simulation.result(ending)
     finally:
-        contacts.close()
-
-
-def _run(
-    world: World,
-    trial: Trial,
-    outside: tuple[Surroundings, Contacts, np.random.Generator],
-    inside: tuple[Drive, Odometry, Driver],
-) -> Run:
-    surroundings, contacts, noise = outside
-    drive, odometry, driver = inside
-    referee = Referee(world.start[:2], world.goal)
-    waiting, command, clearance, step = STOP, STOP, np.inf, 0
-    ranges = np.zeros(SCANNER.beams)
-    while True:
-        t = step * DT
-        surroundings.move(t)
-        pose = drive.pose
-        clearance = min(clearance, surroundings.clearance(pose))
-        touches = contacts.touches(pose, surroundings.movers)
-        if ending := referee.look(t, (float(pose[0]), float(pose[1])), touches):
-            break
-        if step % READ == 0 and step:
-            odometry.read(drive.rolled, float(pose[2]) - world.start.yaw)
-        if step % DECIDE == 0:
-            ranges = surroundings.scan(pose, noise)
-            waiting = driver.command(t, ranges.copy(), drive, odometry)
-        if step % DECIDE == LATE:
-            command = waiting
-        drive.step(command)
-        step += 1
-    taken = referee.time(t)
-    return Run(
-        world.name,
-        trial.number,
-        ending,
-        taken,
-        None if world.optimal_time is None else score(ending, taken, world.optimal_time),
-        float(clearance),
-        pose.copy(),
-        np.array(driver.true).reshape(-1, 3),
-        np.array(driver.believed).reshape(-1, 3),
-        _seen(driver, ranges),
-        surroundings.movers,
-        float(np.mean(driver.ms)) if driver.ms else 0.0,
-        max(driver.ms, default=0.0),
-    )
+        simulation.close()
 
 
 def _seen(driver: Driver, ranges: Floats) -> Floats:
@@ -190,6 +205,6 @@ def _seen(driver: Driver, ranges: Floats) -> Floats:
         return np.zeros((0, 2))
     x, y, yaw = driver.true[-1]
     hit = ranges > 0.0
-    angles = yaw + SCANNER.angle_min + SCANNER.angle_increment * np.flatnonzero(hit)
+    angles = SCANNER.angle_min + SCANNER.angle_increment * np.flatnonzero(hit)
     from_scanner = ranges[hit, np.newaxis] * np.column_stack((np.cos(angles), np.sin(angles)))
-    return from_scanner + (x + SCANNER.forward * np.cos(yaw), y + SCANNER.forward * np.sin(yaw))
+    return transform(Pose2(x, y, yaw), from_scanner + np.array((SCANNER.forward, 0.0)))

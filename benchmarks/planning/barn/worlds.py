@@ -73,7 +73,7 @@ def static_world(data: Path | None, number: int) -> World:
     if centres is None:
         raise BadInput(f"{path}: it holds no array world_{number}")
     cells = _points(path, f"path_{number}")
-    way = None if cells is None else cells * 2 * RADIUS + (-RADIUS - 60 * RADIUS, RADIUS + 5.0)
+    way = None if cells is None else cells * 2 * RADIUS + np.array((-61 * RADIUS, RADIUS + 5.0))
     discs = np.column_stack((centres, np.full(len(centres), RADIUS)))
     length = _path_lengths(barn_file(data, "worlds.csv")).get(number)
     if length is None:
@@ -85,7 +85,7 @@ def _points(path: Path, key: str) -> Floats | None:
     """(n, 2), None where the archive has no such array."""
     try:
         with np.load(path, allow_pickle=False) as file:
-            found = file[key] if key in file.files else None
+            found: Floats | None = file[key] if key in file.files else None
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
         raise BadInput(f"{path}: {key} cannot be read ({error})") from error
     if found is None:
