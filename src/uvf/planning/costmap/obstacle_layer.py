@@ -124,11 +124,17 @@ class ObstacleLayer:
         at = (np.arange(n) + 0.5) * self.resolution
         self.cells[np.hypot((at + y - centre[1])[:, None], at + x - centre[0]) > beyond] = NO_INFORMATION
 
-    def costmap(self, footprint: RobotFootprint, inflation: Inflation) -> Costmap:
-        """The window as a costmap. No half cell is added to the footprint: a beam's end is known better than its cell."""
-        unknown = self.cells == NO_INFORMATION
-        values, distance = inflate(self.cells, self.resolution, footprint.inscribed_radius, inflation)
-        return Costmap(self.resolution, self.origin, footprint, values, self.cells == FREE_SPACE, unknown, distance)
+    def costmap(self, footprint: RobotFootprint, inflation: Inflation, size: float | None = None) -> Costmap:
+        """The window, or its middle of ``size`` [m], as a costmap.
+
+        No half cell is added to the footprint: a beam's end is known better than its cell.
+        """
+        n = len(self.cells)
+        cut = 0 if size is None else max((n - int(np.ceil(size / self.resolution))) // 2, 0)
+        cells = np.ascontiguousarray(self.cells[cut : n - cut, cut : n - cut])
+        values, distance = inflate(cells, self.resolution, footprint.inscribed_radius, inflation)
+        origin = (self.origin[0] + cut * self.resolution, self.origin[1] + cut * self.resolution)
+        return Costmap(self.resolution, origin, footprint, values, cells == FREE_SPACE, cells == NO_INFORMATION, distance)
 
 
 def _shift(array: NDArray[np.generic], down: int, across: int, empty: float) -> None:

@@ -28,7 +28,8 @@ class MppiSettings:
     step: float = 0.05  # s
     speed_noise: float = 0.3  # standard deviation, as a share of the speed range
     turn_noise: float = 0.35  # the same of the turn rate
-    temperature: float = 0.15
+    noise_memory: float = 0.85  # correlation from one step to the next: slow changes explore farther than fast ones
+    temperature: float = 0.3
     collision_weight: float = 60.0
     cost_weight: float = 3.0
     to_go_weight: float = 2.0  # 1/m
@@ -37,6 +38,8 @@ class MppiSettings:
     reverse_weight: float = 1.5  # 1/m
     turn_weight: float = 0.05  # s/rad
     near_weight: float = 8.0
+    fast_weight: float = 6.0
+    close_weight: float = 10.0
     heed: float = 0.5  # m to a moving obstacle from which it matters
 
 
@@ -50,7 +53,7 @@ class Mppi:
         self._rng = np.random.default_rng(seed)
         shape = (POOL * settings.samples, settings.steps, 2)
         spread = (settings.speed_noise * (limits.max_speed - min(limits.min_speed, 0.0)), settings.turn_noise * limits.max_turn_rate)
-        self._noise: Floats32 = (self._rng.standard_normal(shape) * spread).astype(np.float32)
+        self._noise = (_coloured(self._rng.standard_normal(shape), settings.noise_memory) * spread).astype(np.float32)
         self._plan: Floats = np.zeros((settings.steps, 2))
         self._commands = np.empty((settings.samples, settings.steps, 2), dtype=np.float32)
         self._found = np.empty((settings.samples, FEATURES), dtype=np.float32)
@@ -83,15 +86,19 @@ class Mppi:
             self._plan[:] = self._commands[best]
             roll_out(grids, start, self._commands[best : best + 1].copy(), (settings.step, self._limits), others, self._found[:1])
         self.best = self._found[0].copy()
-        speed, turn = float(self._plan[0, 0]), float(self._plan[0, 1])
+        dv, dw = self._limits.acceleration * settings.step, self._limits.angular_acceleration * settings.step
+        speed = min(max(float(self._plan[0, 0]), state.speed - dv), state.speed + dv)
+        turn = min(max(float(self._plan[0, 1]), state.turn_rate - dw), state.turn_rate + dw)
+        most = self._limits.lateral_acceleration / max(abs(speed), 1e-3)
         self._plan[:-1] = self._plan[1:]
-        return speed, turn
+        return speed, min(max(turn, -most), most)
 
     @property
     def _weights(self) -> Floats32:
         s, weights = self.settings, np.zeros(FEATURES, dtype=np.float32)
         weights[rollout.COLLIDED], weights[rollout.COST], weights[rollout.NEAR] = s.collision_weight, s.cost_weight, s.near_weight
         weights[rollout.TO_GO], weights[rollout.MEAN_TO_GO], weights[rollout.OFF_PATH] = s.to_go_weight, s.mean_to_go_weight, s.off_path_weight
+        weights[rollout.FAST], weights[rollout.CLOSE] = s.fast_weight, s.close_weight
         weights[rollout.REVERSED], weights[rollout.TURNED] = s.reverse_weight, s.turn_weight
         return weights
 
@@ -107,6 +114,14 @@ def _steady(limits: Limits, settings: MppiSettings) -> Floats32:
     turns = np.linspace(-limits.max_turn_rate, limits.max_turn_rate, 13)
     pairs = np.stack(np.meshgrid(speeds, turns, indexing="ij"), axis=-1).reshape(-1, 2)
     return pairs[: settings.samples // 2].astype(np.float32)
+
+
+def _coloured(white: Floats, memory: float) -> Floats:
+    """Noise (k, n, 2) of unit deviation with so much correlation from step to step, from white noise; the first step has it too."""
+    out = white.copy()
+    for i in range(1, white.shape[1]):
+        out[:, i] = memory * out[:, i - 1] + np.sqrt(1.0 - memory**2) * white[:, i]
+    return out
 
 
 @compiled

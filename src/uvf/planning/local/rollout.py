@@ -22,6 +22,7 @@ class Limits(NamedTuple):
     max_turn_rate: float  # rad/s
     acceleration: float  # m/s^2
     angular_acceleration: float  # rad/s^2
+    lateral_acceleration: float  # m/s^2, of speed times turn rate, beyond which the wheels slide or the vehicle tips
 
 
 @dataclass(frozen=True)
@@ -35,11 +36,12 @@ class State:
     turn_rate: float
 
 
-FEATURES = 9
-COLLIDED, COST, WORST, TO_GO, MEAN_TO_GO, OFF_PATH, REVERSED, TURNED, NEAR = range(FEATURES)
+FEATURES = 11
+COLLIDED, COST, WORST, TO_GO, MEAN_TO_GO, OFF_PATH, REVERSED, TURNED, NEAR, FAST, CLOSE = range(FEATURES)
 """Columns of what a rollout finds: share of the horizon [0..1] that comes after the first contact (0: none); mean cost [0..1]; largest
 cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards [m];
-mean turn rate [rad/s]; mean nearness to moving obstacles [0..1, with 1 = contact]."""
+mean turn rate [rad/s]; mean nearness to moving obstacles [0..1, with 1 = contact]; mean cost times the square of the share of the largest speed [0..1]; share of
+the horizon within the soft margin of an obstacle, weighed by 0.3 and the share of the largest speed."""
 
 
 @compiled
@@ -87,12 +89,13 @@ def roll_out(
     dv, dw = limits.acceleration * dt, limits.angular_acceleration * dt
     for k in range(commands.shape[0]):
         x, y, yaw, speed, turn = state
-        cost = worst = mean_to_go = off_path = back = turned = near = collided = 0.0
+        cost = worst = mean_to_go = off_path = back = turned = near = collided = fast = close = 0.0
         to_go = 0.0
         for i in range(horizon):
             wanted = min(max(float(commands[k, i, 0]), limits.min_speed), limits.max_speed)
             speed += min(max(wanted - speed, -dv), dv)
-            wanted = min(max(float(commands[k, i, 1]), -limits.max_turn_rate), limits.max_turn_rate)
+            most = min(limits.max_turn_rate, limits.lateral_acceleration / max(abs(speed), 1e-3))
+            wanted = min(max(float(commands[k, i, 1]), -most), most)
             turn += min(max(wanted - turn, -dw), dw)
             middle = yaw + 0.5 * turn * dt
             x += speed * dt * np.cos(middle)
@@ -106,6 +109,8 @@ def roll_out(
                 heading = int(np.floor(yaw / STEP + 0.5)) & (HEADINGS - 1)
                 if (grids.blocked[r, c] >> np.uint64(heading)) & np.uint64(1):
                     collided = 1.0 - i / horizon
+                elif (grids.close[r, c] >> np.uint64(heading)) & np.uint64(1):
+                    close += 0.3 + abs(speed) / limits.max_speed
             to_go = _sample(grids.to_go, in_x, in_y)
             if obstacles.shape[0] > 0:
                 cosine, sine, ahead, closest = np.cos(yaw), np.sin(yaw), (i + 1) * dt, heed
@@ -120,6 +125,7 @@ def roll_out(
                 mean_to_go += left * to_go
                 break
             cost += value
+            fast += value * (speed / limits.max_speed) ** 2
             worst = max(worst, value)
             mean_to_go += to_go
             off_path += _sample(grids.off_path, in_x, in_y)
@@ -128,3 +134,4 @@ def roll_out(
         out[k, COLLIDED], out[k, COST], out[k, WORST] = collided, cost / (252.0 * horizon), worst
         out[k, TO_GO], out[k, MEAN_TO_GO], out[k, OFF_PATH] = to_go, mean_to_go / horizon, off_path / horizon
         out[k, REVERSED], out[k, TURNED], out[k, NEAR] = back, turned / horizon, near / horizon
+        out[k, FAST], out[k, CLOSE] = fast / (252.0 * horizon), close / horizon

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from uvf.maths.grids import distance_field
 from uvf.planning.costmap.costmap import Costmap
-from uvf.planning.costmap.inflation import NO_INFORMATION
+from uvf.planning.costmap.headings import blocked_headings
+from uvf.planning.costmap.inflation import LETHAL, NO_INFORMATION
 from uvf.planning.search.grid_search import GridSearch
 
 Bytes = NDArray[np.uint8]
@@ -29,6 +30,8 @@ class Grids(NamedTuple):
     """0 to 254; unknown ground counts as free."""
     blocked: Bits
     """Bit ``heading_bin(yaw)`` set: the footprint touches an obstacle."""
+    close: Bits
+    """The same for the footprint with the soft margin round it."""
     to_go: Floats32
     """m to the goal, longer where it is dear."""
     off_path: Floats32
@@ -42,6 +45,7 @@ class WindowSettings:
     """The window about the vehicle."""
 
     size: float = 6.0  # m, its side
+    soft_margin: float = 0.08  # m round the footprint that is entered at a price, slowly
 
 
 def local_window(costs: Costmap, here: Point, path: Floats, factors: Floats, settings: WindowSettings) -> Grids:
@@ -68,9 +72,12 @@ def local_window(costs: Costmap, here: Point, path: Floats, factors: Floats, set
         marks = np.zeros(values.shape, dtype=np.bool_)
         marks[cells[inside, 0], cells[inside, 1]] = True
         off_path = distance_field(marks) * costs.resolution
+    occupied = values == LETHAL
     values[values == NO_INFORMATION] = 0
-    blocked = np.ascontiguousarray(costs.blocked[window])
-    return Grids(values, blocked, to_go.astype(np.float32), off_path.astype(np.float32), (*corner, costs.resolution))
+    blocked, close = (
+        blocked_headings(occupied, costs.resolution, footprint) for footprint in (costs.footprint, costs.footprint.padded(settings.soft_margin))
+    )
+    return Grids(values, blocked, close, to_go.astype(np.float32), off_path.astype(np.float32), (*corner, costs.resolution))
 
 
 def _seed(values: Bytes, cells: NDArray[np.int64], inside: NDArray[np.bool_], factors: Floats) -> int:
