@@ -1,0 +1,130 @@
+"""One kernel that drives many candidate command sequences ahead and says what each would meet."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.compiled import compiled
+from uvf.planning.costmap.headings import HEADINGS, STEP
+from uvf.planning.local.window import Grids
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+
+class Limits(NamedTuple):
+    """What a differential drive can do."""
+
+    min_speed: float  # m/s, below 0 where it may reverse
+    max_speed: float  # m/s
+    max_turn_rate: float  # rad/s
+    acceleration: float  # m/s^2
+    angular_acceleration: float  # rad/s^2
+
+
+@dataclass(frozen=True)
+class State:
+    """Pose [m, m, rad] in the window's frame and velocity [m/s, rad/s] of the vehicle."""
+
+    x: float
+    y: float
+    yaw: float
+    speed: float
+    turn_rate: float
+
+
+FEATURES = 9
+COLLIDED, COST, WORST, TO_GO, MEAN_TO_GO, OFF_PATH, REVERSED, TURNED, NEAR = range(FEATURES)
+"""Columns of what a rollout finds: share of the horizon [0..1] that comes after the first contact (0: none); mean cost [0..1]; largest
+cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards [m];
+mean turn rate [rad/s]; mean nearness to moving obstacles [0..1, with 1 = contact]."""
+
+
+@compiled
+def _sample(field: Floats32, x: float, y: float) -> float:
+    """Bilinear, at (x, y) in cells from the corner of cell [0, 0]; at the border the nearest cell's."""
+    rows, columns = field.shape
+    x, y = min(max(x - 0.5, 0.0), columns - 1.000001), min(max(y - 0.5, 0.0), rows - 1.000001)
+    c, r = int(x), int(y)
+    u, v = x - c, y - r
+    below = field[r, c] * (1.0 - u) + field[r, c + 1] * u
+    above = field[r + 1, c] * (1.0 - u) + field[r + 1, c + 1] * u
+    return below * (1.0 - v) + above * v
+
+
+@compiled
+def _gap(sides: Floats, x: float, y: float, cosine: float, sine: float) -> float:
+    """Distance [m] from a point, relative to the vehicle's centre, to its outline, below 0 inside; at corners no more than the true one."""
+    ahead, left = cosine * x + sine * y, cosine * y - sine * x
+    gap = -np.inf
+    for k in range(sides.shape[0]):
+        gap = max(gap, sides[k, 0] * ahead + sides[k, 1] * left - sides[k, 2])
+    return gap
+
+
+@compiled
+def roll_out(
+    grids: Grids,
+    state: tuple[float, float, float, float, float],
+    commands: Floats32,
+    step: tuple[float, Limits],
+    others: tuple[Floats, Floats, float],
+    out: Floats32,
+) -> None:
+    """Fills ``out`` (k, FEATURES) for the commands (k, n, 2) of speed [m/s] and turn rate [rad/s], each held for a step.
+
+    state: x, y, yaw, speed, turn rate in the window's frame; step: (duration [s], limits: the vehicle follows commands as fast as they
+    allow); others: (moving obstacles (m, 5) x, y, vx, vy [m, m/s], radius [m]; sides of the footprint (n, 3); distance [m] at which they
+    begin to matter). After a contact a rollout stands still.
+    """
+    dt, limits = step
+    obstacles, sides, heed = others
+    x0, y0, resolution = grids.frame
+    rows, columns = grids.values.shape
+    horizon = commands.shape[1]
+    dv, dw = limits.acceleration * dt, limits.angular_acceleration * dt
+    for k in range(commands.shape[0]):
+        x, y, yaw, speed, turn = state
+        cost = worst = mean_to_go = off_path = back = turned = near = collided = 0.0
+        to_go = 0.0
+        for i in range(horizon):
+            wanted = min(max(float(commands[k, i, 0]), limits.min_speed), limits.max_speed)
+            speed += min(max(wanted - speed, -dv), dv)
+            wanted = min(max(float(commands[k, i, 1]), -limits.max_turn_rate), limits.max_turn_rate)
+            turn += min(max(wanted - turn, -dw), dw)
+            middle = yaw + 0.5 * turn * dt
+            x += speed * dt * np.cos(middle)
+            y += speed * dt * np.sin(middle)
+            yaw += turn * dt
+            in_x, in_y = (x - x0) / resolution, (y - y0) / resolution
+            r, c = int(np.floor(in_y)), int(np.floor(in_x))
+            value = 0
+            if 0 <= r < rows and 0 <= c < columns:
+                value = grids.values[r, c]
+                heading = int(np.floor(yaw / STEP + 0.5)) & (HEADINGS - 1)
+                if (grids.blocked[r, c] >> np.uint64(heading)) & np.uint64(1):
+                    collided = 1.0 - i / horizon
+            to_go = _sample(grids.to_go, in_x, in_y)
+            if obstacles.shape[0] > 0:
+                cosine, sine, ahead, closest = np.cos(yaw), np.sin(yaw), (i + 1) * dt, heed
+                for m in range(obstacles.shape[0]):
+                    dx, dy = obstacles[m, 0] + ahead * obstacles[m, 2] - x, obstacles[m, 1] + ahead * obstacles[m, 3] - y
+                    closest = min(closest, _gap(sides, dx, dy, cosine, sine) - obstacles[m, 4])
+                if closest <= 0.0:
+                    collided = max(collided, 1.0 - i / horizon)
+                near += (heed - max(closest, 0.0)) / heed
+            if collided > 0.0:
+                left = horizon - i
+                mean_to_go += left * to_go
+                break
+            cost += value
+            worst = max(worst, value)
+            mean_to_go += to_go
+            off_path += _sample(grids.off_path, in_x, in_y)
+            back += max(-speed, 0.0) * dt
+            turned += abs(turn)
+        out[k, COLLIDED], out[k, COST], out[k, WORST] = collided, cost / (252.0 * horizon), worst
+        out[k, TO_GO], out[k, MEAN_TO_GO], out[k, OFF_PATH] = to_go, mean_to_go / horizon, off_path / horizon
+        out[k, REVERSED], out[k, TURNED], out[k, NEAR] = back, turned / horizon, near / horizon
