@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from benchmarks.planning.barn.worlds import World
 from uvf.maths.kinematics import Twist
 from uvf.maths.se2 import Pose2, inverse, transform
+from uvf.models.yaml_data import BadInput
 
 Floats = NDArray[np.float64]
 
@@ -20,12 +21,15 @@ MOST = 1.5  # rad/s
 
 
 class PathFollower:
-    """Follows the organisers' path of a world slowly, from the true pose: pure pursuit of a place a little ahead."""
+    """Follows the organisers' path of a world slowly, from the true pose: pure pursuit of a place a little ahead.
+
+    The path is first eased off the cylinders: in some worlds the footprint does not pass along it as it is.
+    """
 
     def __init__(self, world: World) -> None:
-        """Raises ValueError for a world without a path."""
+        """Raises BadInput for a world without a path."""
         if world.path is None:
-            raise ValueError(f"{world.name}: it has no path to follow; choose another controller")
+            raise BadInput(f"{world.name}: it has no path to follow; choose another --controller")
         corners = np.array((world.start[:2], *world.path, world.goal))
         eased = _eased(_spaced(corners), world.discs) if len(world.discs) else _spaced(corners)
         self._places = transform(inverse(world.start), eased)

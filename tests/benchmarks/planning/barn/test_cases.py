@@ -64,3 +64,8 @@ def test_a_seed_makes_the_same_rows_again(tmp_path):
 def test_a_controller_that_is_not_there_is_refused_with_the_nearest():
     with pytest.raises(BadInput, match="did you mean 'straight'"):
         known_controller("straigth")
+
+
+def test_a_path_cannot_be_followed_where_there_is_none(tmp_path):
+    with pytest.raises(BadInput, match=r"easy_2: it has no path.*--controller"):
+        run_groups(["nav", "dynabarn"], folder(tmp_path), None, False, Selection(controller="path"))
