@@ -67,6 +67,16 @@ def _gap(sides: Floats, x: float, y: float, cosine: float, sine: float) -> float
 
 
 @compiled
+def _is_blocked(grids: Grids, x: float, y: float, yaw: float) -> bool:
+    """Whether the footprint touches an obstacle at a pose."""
+    r, c = int(np.floor((y - grids.frame[1]) / grids.frame[2])), int(np.floor((x - grids.frame[0]) / grids.frame[2]))
+    if not (0 <= r < grids.values.shape[0] and 0 <= c < grids.values.shape[1]):
+        return False
+    heading = int(np.floor(yaw / STEP + 0.5)) & (HEADINGS - 1)
+    return bool((grids.blocked[r, c] >> np.uint64(heading)) & np.uint64(1))
+
+
+@compiled
 def roll_out(
     grids: Grids,
     state: tuple[float, float, float, float, float],
@@ -79,7 +89,8 @@ def roll_out(
 
     state: x, y, yaw, speed, turn rate in the window's frame; step: (duration [s], limits: the vehicle follows commands as fast as they
     allow); others: (moving obstacles (m, 5) x, y, vx, vy [m, m/s], radius [m]; sides of the footprint (n, 3); distance [m] at which they
-    begin to matter). After a contact a rollout stands still.
+    begin to matter). After a contact a rollout stands still; a vehicle
+    that touches something from the start may get out of it.
     """
     dt, limits = step
     obstacles, sides, heed = others
@@ -91,6 +102,7 @@ def roll_out(
         x, y, yaw, speed, turn = state
         cost = worst = mean_to_go = off_path = back = turned = near = collided = fast = close = 0.0
         to_go = 0.0
+        inside = _is_blocked(grids, x, y, yaw)
         for i in range(horizon):
             wanted = min(max(float(commands[k, i, 0]), limits.min_speed), limits.max_speed)
             speed += min(max(wanted - speed, -dv), dv)
@@ -108,9 +120,14 @@ def roll_out(
                 value = grids.values[r, c]
                 heading = int(np.floor(yaw / STEP + 0.5)) & (HEADINGS - 1)
                 if (grids.blocked[r, c] >> np.uint64(heading)) & np.uint64(1):
-                    collided = 1.0 - i / horizon
-                elif (grids.close[r, c] >> np.uint64(heading)) & np.uint64(1):
-                    close += 0.3 + abs(speed) / limits.max_speed
+                    if inside:  # it was there from the start: the sooner it is out the better
+                        close += 1.3
+                    else:
+                        collided = 1.0 - i / horizon
+                else:
+                    inside = False
+                    if (grids.close[r, c] >> np.uint64(heading)) & np.uint64(1):
+                        close += 0.3 + abs(speed) / limits.max_speed
             to_go = _sample(grids.to_go, in_x, in_y)
             if obstacles.shape[0] > 0:
                 cosine, sine, ahead, closest = np.cos(yaw), np.sin(yaw), (i + 1) * dt, heed
