@@ -1,4 +1,5 @@
 """Prototype stack."""
+
 import numpy as np
 from math import atan2, hypot
 from uvf.maths.se2 import Pose2, transform, inverse, compose
@@ -13,7 +14,9 @@ from uvf.planning.local.dwa import Dwa, DwaSettings
 from uvf.planning.local.swept_stop import safe_share
 from uvf.planning.local import rollout
 from uvf.planning.search.grid_search import GridSearch
+from uvf.planning.moving.tracks import MovingObjects
 from uvf.planning.smoothing import resample
+
 
 class Stack:
     def __init__(self, briefing, local="mppi", **kw):
@@ -28,12 +31,13 @@ class Stack:
         vmax = kw.get("vmax", 2.0)
         self.limits = Limits(kw.get("vmin", -0.5), vmax, kw.get("wmax", 2.0), kw.get("acc", 2.5), kw.get("wacc", 6.0), kw.get("alat", 2.0))
         if local == "mppi":
-            self.local = Mppi(self.limits, self.soft.sides(), MppiSettings(**kw.get("mppi", {})), briefing.seed)
+            self.local = Mppi(self.limits, self.soft, MppiSettings(**kw.get("mppi", {})), briefing.seed)
         else:
-            self.local = Dwa(self.limits, self.soft.sides(), DwaSettings(**kw.get("dwa", {})))
+            self.local = Dwa(self.limits, self.soft, DwaSettings(**kw.get("dwa", {})))
         s = r.scanner
         a = s.angle_min + s.angle_increment * np.arange(s.beams)
         self.rays = np.stack((np.cos(a), np.sin(a)), axis=1)
+        self.moving = MovingObjects()
         self.path = None
         self.planned = -9.0
         self.every = kw.get("every", 0.2)
@@ -53,7 +57,9 @@ class Stack:
         self.layer.recentre(pose[:2])
         ends = transform(pose, body)
         eye = transform(pose, np.array([[s.forward, 0.0]]))[0]
-        self.layer.observe(Observation(t, (float(eye[0]), float(eye[1])), ends, hit & (ranges < 10.0)))
+        moves = self.moving.observe(t, (float(eye[0]), float(eye[1])), ends, np.where(hit, ranges, 0.0))
+        self.layer.observe(Observation(t, (float(eye[0]), float(eye[1])), ends, hit & (ranges < 10.0) & ~moves))
+        obstacles = self.moving.moving()
         self.layer.forget(t)
         costs = self.layer.costmap(self.soft, self.infl, 7.0)
         if t - self.planned >= self.every - 1e-9 or self.path is None:
@@ -71,10 +77,10 @@ class Stack:
         w = min(max(self.last[1], mw - self.limits.angular_acceleration * 0.15), mw + self.limits.angular_acceleration * 0.15)
         m = pose[2] + w * d / 2
         st = State(pose[0] + v * d * np.cos(m), pose[1] + v * d * np.sin(m), pose[2] + w * d, v, w)
-        v, w = self.local.command(st, grids)
+        v, w = self.local.command(st, grids, obstacles)
         near = body[hit & (ranges < 4.0)]
         # the speed it has counts as well as the one it is to have
-        share = safe_share(near, (v if abs(v) > abs(mv) else mv, w if abs(w)>abs(mw) else mw), self.fp, 0.01, self.brake)
+        share = safe_share(near, (v if abs(v) > abs(mv) else mv, w if abs(w) > abs(mw) else mw), self.fp, 0.01, self.brake)
         share = min(share, safe_share(near, (v, w), self.fp, 0.01, self.brake))
         if share < 1.0:
             self.stopped += 1
@@ -86,7 +92,8 @@ class Stack:
         n = costs.values.shape[0]
         g = costs.cell(*self.goal)
         if not costs.holds(g):
-            d = self.goal - np.array(pose[:2]); d *= (n * 0.05 / 2 - 0.3) / np.abs(d).max()
+            d = self.goal - np.array(pose[:2])
+            d *= (n * 0.05 / 2 - 0.3) / np.abs(d).max()
             g = costs.cell(*(np.array(pose[:2]) + d))
         opened = with_way_out(costs, here, 0.3)
         found = GridSearch(opened.values, self.factors).astar(here, g)

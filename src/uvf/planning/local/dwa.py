@@ -8,13 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local import rollout
-from uvf.planning.local.rollout import FEATURES, Limits, State, roll_out
+from uvf.planning.local.rollout import FEATURES, NOBODY, Limits, Others, State, roll_out
 from uvf.planning.local.window import UNREACHED, Grids
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
+
+HEED = 0.5  # m from the outline to a moving obstacle, within which its distance is computed
 
 
 @dataclass(frozen=True)
@@ -36,11 +39,9 @@ class DwaSettings:
 class Dwa:
     """Chooses the steady command whose arc ends nearest to path and goal and farthest from obstacles; touching ones are out."""
 
-    def __init__(self, limits: Limits, sides: Floats, settings: DwaSettings) -> None:
-        """sides: of the footprint, (n, 3) as ``RobotFootprint.sides`` has them."""
+    def __init__(self, limits: Limits, footprint: RobotFootprint, settings: DwaSettings) -> None:
         self.settings = settings
-        self._limits, self._sides = limits, sides
-        self._none: Floats = np.zeros((0, 5))
+        self._limits, self._outline = limits, (footprint.sides(), footprint.circumscribed_radius)
 
     def reset(self) -> None:
         """Nothing is remembered from one cycle to the next."""
@@ -52,7 +53,7 @@ class Dwa:
         steps = max(round(s.sim_time / s.step), 1)
         commands = np.ascontiguousarray(np.repeat(pairs[:, None, :], steps, axis=1).astype(np.float32))
         found = np.empty((len(pairs), FEATURES), dtype=np.float32)
-        others = (self._none if obstacles is None else obstacles, self._sides, 0.5)
+        others = Others(NOBODY if obstacles is None else obstacles, *self._outline, HEED, 0.0)
         start = (state.x, state.y, state.yaw, state.speed, state.turn_rate)
         roll_out(grids, start, commands, (s.step, self._limits), others, found)
         allowed = (found[:, rollout.COLLIDED] == 0.0) & (found[:, rollout.TO_GO] < UNREACHED / 2)

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
+from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local import rollout
-from uvf.planning.local.rollout import FEATURES, Limits, State, roll_out
+from uvf.planning.local.rollout import FEATURES, NOBODY, Limits, Others, State, roll_out
 from uvf.planning.local.window import Grids
 
 Floats = NDArray[np.float64]
@@ -41,15 +42,15 @@ class MppiSettings:
     fast_weight: float = 6.0
     close_weight: float = 10.0
     heed: float = 0.5  # m to a moving obstacle from which it matters
+    growth: float = 0.1  # m/s by which a moving obstacle is taken to be wider the farther ahead one looks
 
 
 class Mppi:
     """Chooses velocities; remembers the last plan, so that each round begins where the last one ended."""
 
-    def __init__(self, limits: Limits, sides: Floats, settings: MppiSettings, seed: int = 0) -> None:
-        """sides: of the footprint, (n, 3) as ``RobotFootprint.sides`` has them."""
+    def __init__(self, limits: Limits, footprint: RobotFootprint, settings: MppiSettings, seed: int = 0) -> None:
         self.settings = settings
-        self._limits, self._sides = limits, sides
+        self._limits, self._outline = limits, (footprint.sides(), footprint.circumscribed_radius)
         self._rng = np.random.default_rng(seed)
         shape = (POOL * settings.samples, settings.steps, 2)
         spread = (settings.speed_noise * (limits.max_speed - min(limits.min_speed, 0.0)), settings.turn_noise * limits.max_turn_rate)
@@ -58,7 +59,6 @@ class Mppi:
         self._commands = np.empty((settings.samples, settings.steps, 2), dtype=np.float32)
         self._found = np.empty((settings.samples, FEATURES), dtype=np.float32)
         self._steady = _steady(limits, settings)
-        self._obstacles: Floats = np.zeros((0, 5))
         self.best: Floats32 = np.zeros(FEATURES, dtype=np.float32)
         """Features of the plan that was chosen last."""
 
@@ -69,7 +69,7 @@ class Mppi:
     def command(self, state: State, grids: Grids, obstacles: Floats | None = None) -> tuple[float, float]:
         """Velocity (m/s, rad/s) for now. obstacles: moving ones (m, 5), as ``roll_out`` takes them."""
         settings = self.settings
-        others = (self._obstacles if obstacles is None else obstacles, self._sides, settings.heed)
+        others = Others(NOBODY if obstacles is None else obstacles, *self._outline, settings.heed, settings.growth)
         start = (state.x, state.y, state.yaw, state.speed, state.turn_rate)
         offset = int(self._rng.integers(0, (POOL - 1) * settings.samples + 1))
         _draw(self._plan, self._noise, offset, self._steady, self._commands)
@@ -97,7 +97,11 @@ class Mppi:
     def _weights(self) -> Floats32:
         s, weights = self.settings, np.zeros(FEATURES, dtype=np.float32)
         weights[rollout.COLLIDED], weights[rollout.COST], weights[rollout.NEAR] = s.collision_weight, s.cost_weight, s.near_weight
-        weights[rollout.TO_GO], weights[rollout.MEAN_TO_GO], weights[rollout.OFF_PATH] = s.to_go_weight, s.mean_to_go_weight, s.off_path_weight
+        weights[rollout.TO_GO], weights[rollout.MEAN_TO_GO], weights[rollout.OFF_PATH] = (
+            s.to_go_weight,
+            s.mean_to_go_weight,
+            s.off_path_weight,
+        )
         weights[rollout.FAST], weights[rollout.CLOSE] = s.fast_weight, s.close_weight
         weights[rollout.REVERSED], weights[rollout.TURNED] = s.reverse_weight, s.turn_weight
         return weights

@@ -36,6 +36,19 @@ class State:
     turn_rate: float
 
 
+class Others(NamedTuple):
+    """Obstacles that move, and the outline that must not touch them."""
+
+    obstacles: Floats
+    """(m, 5) x, y [m], vx, vy [m/s], radius [m], in the window's frame."""
+    sides: Floats
+    """(n, 3) of the footprint, as ``RobotFootprint.sides`` has them."""
+    circumscribed_radius: float  # m, of the footprint
+    heed: float  # m from the outline, within which an obstacle matters
+    growth: float  # m/s by which an obstacle is taken to be wider the farther ahead one looks
+
+
+NOBODY: Floats = np.zeros((0, 5))
 FEATURES = 11
 COLLIDED, COST, WORST, TO_GO, MEAN_TO_GO, OFF_PATH, REVERSED, TURNED, NEAR, FAST, CLOSE = range(FEATURES)
 """Columns of what a rollout finds: share of the horizon [0..1] that comes after the first contact (0: none); mean cost [0..1]; largest
@@ -54,6 +67,15 @@ def _sample(field: Floats32, x: float, y: float) -> float:
     below = field[r, c] * (1.0 - u) + field[r, c + 1] * u
     above = field[r + 1, c] * (1.0 - u) + field[r + 1, c + 1] * u
     return below * (1.0 - v) + above * v
+
+
+@compiled
+def _turned(cosine: float, sine: float, angle: float) -> tuple[float, float]:
+    """Cosine and sine of a heading turned by a small angle [rad], by their series to the fifth power."""
+    square = angle * angle
+    c = 1.0 - square * (0.5 - square / 24.0)
+    s = angle * (1.0 - square * (1.0 / 6.0 - square / 120.0))
+    return cosine * c - sine * s, sine * c + cosine * s
 
 
 @compiled
@@ -82,18 +104,17 @@ def roll_out(
     state: tuple[float, float, float, float, float],
     commands: Floats32,
     step: tuple[float, Limits],
-    others: tuple[Floats, Floats, float],
+    others: Others,
     out: Floats32,
 ) -> None:
     """Fills ``out`` (k, FEATURES) for the commands (k, n, 2) of speed [m/s] and turn rate [rad/s], each held for a step.
 
     state: x, y, yaw, speed, turn rate in the window's frame; step: (duration [s], limits: the vehicle follows commands as fast as they
-    allow); others: (moving obstacles (m, 5) x, y, vx, vy [m, m/s], radius [m]; sides of the footprint (n, 3); distance [m] at which they
-    begin to matter). After a contact a rollout stands still; a vehicle
+    allow). After a contact a rollout stands still; a vehicle
     that touches something from the start may get out of it.
     """
     dt, limits = step
-    obstacles, sides, heed = others
+    obstacles, heed = others.obstacles, others.heed
     x0, y0, resolution = grids.frame
     rows, columns = grids.values.shape
     horizon = commands.shape[1]
@@ -101,7 +122,7 @@ def roll_out(
     for k in range(commands.shape[0]):
         x, y, yaw, speed, turn = state
         cost = worst = mean_to_go = off_path = back = turned = near = collided = fast = close = 0.0
-        to_go = 0.0
+        to_go, cosine, sine = 0.0, np.cos(yaw), np.sin(yaw)
         inside = _is_blocked(grids, x, y, yaw)
         for i in range(horizon):
             wanted = min(max(float(commands[k, i, 0]), limits.min_speed), limits.max_speed)
@@ -109,15 +130,17 @@ def roll_out(
             most = min(limits.max_turn_rate, limits.lateral_acceleration / max(abs(speed), 1e-3))
             wanted = min(max(float(commands[k, i, 1]), -most), most)
             turn += min(max(wanted - turn, -dw), dw)
-            middle = yaw + 0.5 * turn * dt
-            x += speed * dt * np.cos(middle)
-            y += speed * dt * np.sin(middle)
+            half = 0.5 * turn * dt
+            cosine, sine = _turned(cosine, sine, half)
+            x += speed * dt * cosine
+            y += speed * dt * sine
+            cosine, sine = _turned(cosine, sine, half)
             yaw += turn * dt
             in_x, in_y = (x - x0) / resolution, (y - y0) / resolution
             r, c = int(np.floor(in_y)), int(np.floor(in_x))
-            value = 0
+            value, beside = 0, 0.0
             if 0 <= r < rows and 0 <= c < columns:
-                value = grids.values[r, c]
+                value, beside = int(grids.values[r, c]), float(grids.off_path[r, c])
                 heading = int(np.floor(yaw / STEP + 0.5)) & (HEADINGS - 1)
                 if (grids.blocked[r, c] >> np.uint64(heading)) & np.uint64(1):
                     if inside:  # it was there from the start: the sooner it is out the better
@@ -130,10 +153,12 @@ def roll_out(
                         close += 0.3 + abs(speed) / limits.max_speed
             to_go = _sample(grids.to_go, in_x, in_y)
             if obstacles.shape[0] > 0:
-                cosine, sine, ahead, closest = np.cos(yaw), np.sin(yaw), (i + 1) * dt, heed
+                ahead, closest = (i + 1) * dt, heed
                 for m in range(obstacles.shape[0]):
                     dx, dy = obstacles[m, 0] + ahead * obstacles[m, 2] - x, obstacles[m, 1] + ahead * obstacles[m, 3] - y
-                    closest = min(closest, _gap(sides, dx, dy, cosine, sine) - obstacles[m, 4])
+                    reach = others.circumscribed_radius + obstacles[m, 4] + others.growth * ahead + closest
+                    if dx * dx + dy * dy < reach * reach:
+                        closest = min(closest, _gap(others.sides, dx, dy, cosine, sine) - obstacles[m, 4] - others.growth * ahead)
                 if closest <= 0.0:
                     collided = max(collided, 1.0 - i / horizon)
                 near += (heed - max(closest, 0.0)) / heed
@@ -145,7 +170,7 @@ def roll_out(
             fast += value * (speed / limits.max_speed) ** 2
             worst = max(worst, value)
             mean_to_go += to_go
-            off_path += _sample(grids.off_path, in_x, in_y)
+            off_path += beside
             back += max(-speed, 0.0) * dt
             turned += abs(turn)
         out[k, COLLIDED], out[k, COST], out[k, WORST] = collided, cost / (252.0 * horizon), worst

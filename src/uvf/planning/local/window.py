@@ -58,7 +58,9 @@ def local_window(costs: Costmap, here: Point, path: Floats, factors: Floats, set
     half = max(ceil(settings.size / 2 / costs.resolution), 2)
     row, column = costs.cell(*here)
     shape = costs.values.shape
-    window = tuple(slice(max(min(at, n - 1) - half, 0), max(min(at, n - 1), 0) + half + 1) for at, n in zip((row, column), shape, strict=True))
+    window = tuple(
+        slice(max(min(at, n - 1) - half, 0), max(min(at, n - 1), 0) + half + 1) for at, n in zip((row, column), shape, strict=True)
+    )
     values = np.ascontiguousarray(costs.values[window])
     corner = (costs.origin[0] + window[1].start * costs.resolution, costs.origin[1] + window[0].start * costs.resolution)
     cells = np.floor((path[:, ::-1] - corner[::-1]) / costs.resolution).astype(np.int64)
@@ -75,7 +77,8 @@ def local_window(costs: Costmap, here: Point, path: Floats, factors: Floats, set
     occupied = values == LETHAL
     values[values == NO_INFORMATION] = 0
     blocked, close = (
-        blocked_headings(occupied, costs.resolution, footprint) for footprint in (costs.footprint, costs.footprint.padded(settings.soft_margin))
+        blocked_headings(occupied, costs.resolution, footprint)
+        for footprint in (costs.footprint, costs.footprint.padded(settings.soft_margin))
     )
     return Grids(values, blocked, close, to_go.astype(np.float32), off_path.astype(np.float32), (*corner, costs.resolution))
 
