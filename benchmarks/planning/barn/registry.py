@@ -4,12 +4,13 @@ from collections.abc import Callable
 
 from benchmarks.planning.barn import checks
 from benchmarks.planning.barn.controllers import Briefing, Controller
+from benchmarks.planning.barn.stack import dwa_stack, mppi_stack
 from benchmarks.planning.barn.worlds import World
 from uvf.models.yaml_data import BadInput, nearest
 
 ControllerMaker = Callable[[Briefing], Controller]
 
-CONTROLLERS: dict[str, ControllerMaker] = {}
+CONTROLLERS: dict[str, ControllerMaker] = {"mppi": mppi_stack, "dwa": dwa_stack}
 """Navigation stacks by name; the first one is the default."""
 
 CHECKS: dict[str, ControllerMaker] = {

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local import rollout
-from uvf.planning.local.rollout import FEATURES, NOBODY, Limits, Others, State, roll_out
-from uvf.planning.local.window import UNREACHED, Grids
+from uvf.planning.local.planner import Limits, Situation, State
+from uvf.planning.local.rollout import FEATURES, Others, roll_out
+from uvf.planning.local.window import UNREACHED
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -46,19 +47,18 @@ class Dwa:
     def reset(self) -> None:
         """Nothing is remembered from one cycle to the next."""
 
-    def command(self, state: State, grids: Grids, obstacles: Floats | None = None) -> tuple[float, float]:
-        """Velocity (m/s, rad/s) for now, (0, 0) where every arc touches something. obstacles: moving ones (m, 5), as ``roll_out`` has them."""
-        s = self.settings
+    def command(self, now: Situation) -> tuple[float, float] | None:
+        """Velocity (m/s, rad/s) for now; None where every arc touches something or leads nowhere."""
+        s, state = self.settings, now.state
         pairs = self._window(state)
         steps = max(round(s.sim_time / s.step), 1)
         commands = np.ascontiguousarray(np.repeat(pairs[:, None, :], steps, axis=1).astype(np.float32))
         found = np.empty((len(pairs), FEATURES), dtype=np.float32)
-        others = Others(NOBODY if obstacles is None else obstacles, *self._outline, HEED, 0.0)
-        start = (state.x, state.y, state.yaw, state.speed, state.turn_rate)
-        roll_out(grids, start, commands, (s.step, self._limits), others, found)
+        others = Others(now.obstacles, *self._outline, HEED, 0.0)
+        roll_out(now.grids, state, commands, (s.step, self._limits), others, found)
         allowed = (found[:, rollout.COLLIDED] == 0.0) & (found[:, rollout.TO_GO] < UNREACHED / 2)
         if not allowed.any():
-            return 0.0, 0.0
+            return None
         costs = (
             s.path_distance_bias * found[:, rollout.OFF_PATH]
             + s.goal_distance_bias * found[:, rollout.TO_GO]

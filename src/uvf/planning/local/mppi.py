@@ -8,14 +8,16 @@ from numpy.typing import NDArray
 from uvf.maths.compiled import compiled
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local import rollout
-from uvf.planning.local.rollout import FEATURES, NOBODY, Limits, Others, State, roll_out
-from uvf.planning.local.window import Grids
+from uvf.planning.local.planner import Limits, Situation
+from uvf.planning.local.rollout import FEATURES, Others, roll_out
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
 POOL = 4
 """Times as much noise as one round needs is drawn at the start; a round takes a part of it from a random place."""
+AT_ONCE = 0.95
+"""Share of the horizon after a contact from which no future is worth driving."""
 SMOOTH = np.array((-3.0, 12.0, 17.0, 12.0, -3.0)) / 35.0
 """Savitzky-Golay of five points, quadratic."""
 
@@ -66,11 +68,10 @@ class Mppi:
         """Forgets the last plan."""
         self._plan[:] = 0.0
 
-    def command(self, state: State, grids: Grids, obstacles: Floats | None = None) -> tuple[float, float]:
-        """Velocity (m/s, rad/s) for now. obstacles: moving ones (m, 5), as ``roll_out`` takes them."""
-        settings = self.settings
-        others = Others(NOBODY if obstacles is None else obstacles, *self._outline, settings.heed, settings.growth)
-        start = (state.x, state.y, state.yaw, state.speed, state.turn_rate)
+    def command(self, now: Situation) -> tuple[float, float] | None:
+        """Velocity (m/s, rad/s) for now; None where every future ends in a contact at once."""
+        settings, grids, start = self.settings, now.grids, now.state
+        others = Others(now.obstacles, *self._outline, settings.heed, settings.growth)
         offset = int(self._rng.integers(0, (POOL - 1) * settings.samples + 1))
         _draw(self._plan, self._noise, offset, self._steady, self._commands)
         _clip(self._commands, self._limits)
@@ -86,12 +87,9 @@ class Mppi:
             self._plan[:] = self._commands[best]
             roll_out(grids, start, self._commands[best : best + 1].copy(), (settings.step, self._limits), others, self._found[:1])
         self.best = self._found[0].copy()
-        dv, dw = self._limits.acceleration * settings.step, self._limits.angular_acceleration * settings.step
-        speed = min(max(float(self._plan[0, 0]), state.speed - dv), state.speed + dv)
-        turn = min(max(float(self._plan[0, 1]), state.turn_rate - dw), state.turn_rate + dw)
-        most = self._limits.lateral_acceleration / max(abs(speed), 1e-3)
+        speed, turn = float(self._plan[0, 0]), float(self._plan[0, 1])
         self._plan[:-1] = self._plan[1:]
-        return speed, min(max(turn, -most), most)
+        return None if self.best[rollout.COLLIDED] > AT_ONCE else (speed, turn)
 
     @property
     def _weights(self) -> Floats32:

@@ -1,6 +1,5 @@
 """One kernel that drives many candidate command sequences ahead and says what each would meet."""
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -8,32 +7,11 @@ from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
 from uvf.planning.costmap.headings import HEADINGS, STEP
+from uvf.planning.local.planner import Limits, State
 from uvf.planning.local.window import Grids
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
-
-
-class Limits(NamedTuple):
-    """What a differential drive can do."""
-
-    min_speed: float  # m/s, below 0 where it may reverse
-    max_speed: float  # m/s
-    max_turn_rate: float  # rad/s
-    acceleration: float  # m/s^2
-    angular_acceleration: float  # rad/s^2
-    lateral_acceleration: float  # m/s^2, of speed times turn rate, beyond which the wheels slide or the vehicle tips
-
-
-@dataclass(frozen=True)
-class State:
-    """Pose [m, m, rad] in the window's frame and velocity [m/s, rad/s] of the vehicle."""
-
-    x: float
-    y: float
-    yaw: float
-    speed: float
-    turn_rate: float
 
 
 class Others(NamedTuple):
@@ -48,13 +26,12 @@ class Others(NamedTuple):
     growth: float  # m/s by which an obstacle is taken to be wider the farther ahead one looks
 
 
-NOBODY: Floats = np.zeros((0, 5))
 FEATURES = 11
 COLLIDED, COST, WORST, TO_GO, MEAN_TO_GO, OFF_PATH, REVERSED, TURNED, NEAR, FAST, CLOSE = range(FEATURES)
 """Columns of what a rollout finds: share of the horizon [0..1] that comes after the first contact (0: none); mean cost [0..1]; largest
-cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards [m];
-mean turn rate [rad/s]; mean nearness to moving obstacles [0..1, with 1 = contact]; mean cost times the square of the share of the largest speed [0..1]; share of
-the horizon within the soft margin of an obstacle, weighed by 0.3 and the share of the largest speed."""
+cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards [m]; mean turn rate
+[rad/s]; mean nearness to moving obstacles [0..1, 1 = contact]; mean cost times the square of the share of the largest speed [0..1];
+share of the horizon within the soft margin of an obstacle, weighed by 0.3 and the share of the largest speed."""
 
 
 @compiled
@@ -101,7 +78,7 @@ def _is_blocked(grids: Grids, x: float, y: float, yaw: float) -> bool:
 @compiled
 def roll_out(
     grids: Grids,
-    state: tuple[float, float, float, float, float],
+    state: State,
     commands: Floats32,
     step: tuple[float, Limits],
     others: Others,

@@ -17,9 +17,9 @@ AWAY = 2e-3  # m by which a vehicle that is too near already has to be farther a
 
 @compiled
 def _least_gap(points: Floats, sides: Floats, radius: float, pose: tuple[float, float, float]) -> float:
-    """Smallest distance [m] from the outline at a pose (x, y, yaw) to the points (n, 2), below 0 inside; at corners no more than the true one.
+    """Smallest distance [m] from the outline at a pose (x, y, yaw) to the points (n, 2), below 0 inside.
 
-    Without sides the outline is a circle of ``radius`` [m].
+    At corners it is no more than the true one. Without sides the outline is a circle of ``radius`` [m].
     """
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
     least = np.inf
@@ -56,8 +56,8 @@ def safe_share(
 ) -> float:
     """The largest fraction [-] of ``velocity`` ([m/s], [rad/s]) at which the vehicle can still stop ``margin`` [m] before all points.
 
-    points: (n, 2) [m], base frame; brake: (reaction [s], deceleration [m/s^2], the same of the turn [rad/s^2]). The outline is swept along the arc, also when it turns
-    on the spot. A vehicle that is already nearer may only move away, without coming nearer on the way. 0 when nothing is safe.
+    points: (n, 2) [m], base frame; brake: (reaction [s], deceleration [m/s^2], the same of the turn [rad/s^2]). The outline is swept
+    along the arc, also when it turns on the spot. A vehicle that is already nearer may only move away, without coming nearer on the way. 0 when nothing is safe.
     """
     linear, angular = velocity
     sides = np.zeros((0, 3)) if footprint.round else footprint.sides()

@@ -48,7 +48,12 @@ def labels_of(points: Floats, ranges: Floats) -> Indices:
             lowest = min(lowest, ranges[i])
             if ranges[i] > highest or peak < 0:
                 highest, peak = ranges[i], i
-            if lowest < highest - DENT and peak > 0 and ranges[i] < highest - DENT and _falls_before(ranges, labels, peak, current, highest):
+            if (
+                lowest < highest - DENT
+                and peak > 0
+                and ranges[i] < highest - DENT
+                and _falls_before(ranges, labels, peak, current, highest)
+            ):
                 current += 1  # what came after the dent is another thing
                 for k in range(peak, i):
                     if labels[k] >= 0:

@@ -147,7 +147,8 @@ class MovingObjects:
             else:
                 track.hidden += dt
         limits = self.settings
-        self.tracks = [k for k in self.tracks if k.unseen <= limits.coast and k.hidden <= limits.coast_hidden and (k.hits > 1 or not k.hidden)]
+        kept = [k for k in self.tracks if k.unseen <= limits.coast and k.hidden <= limits.coast_hidden]
+        self.tracks = [k for k in kept if k.hits > 1 or not k.hidden]
 
 
 def _in_view(track: Track, eye: Point, points: Floats, ranges: Floats) -> bool:
