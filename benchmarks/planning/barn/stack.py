@@ -17,7 +17,7 @@ from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.local.controller import ControllerSettings, LocalController
 from uvf.planning.local.dwa import Dwa, DwaSettings
 from uvf.planning.local.mppi import Mppi, MppiSettings
-from uvf.planning.local.planner import Limits, LocalPlanner
+from uvf.planning.local.planner import Limits
 from uvf.planning.search.grid_search import GridSearch
 from uvf.planning.smoothing import resample
 
@@ -54,12 +54,9 @@ class Beams:
 class MaplessStack:
     """A controller of the benchmark: A* over the obstacle layer and a local planner."""
 
-    def __init__(
-        self, briefing: Briefing, outline: tuple[RobotFootprint, Limits], planner: LocalPlanner, settings: ControllerSettings
-    ) -> None:
-        """outline: the footprint that is planned for, and the limits."""
-        self._local = LocalController(*outline, planner, settings)
-        self._beams = Beams.of(briefing.robot.scanner)
+    def __init__(self, scanner: Scanner, controller: LocalController) -> None:
+        self._local = controller
+        self._beams = Beams.of(scanner)
         self._goal: Floats = np.zeros(2)
         self._path: Floats = np.zeros((0, 2))
         self._planned_at = -np.inf
