@@ -6,13 +6,13 @@ to 8.11, the misprints in 8.3, 8.4 and 8.11 mended as in OMPL's ReedsSheppStateS
 are left out: lengths are signed, so that each solution leads to the goal, and none is lost where a sign is that of a rounding error.
 """
 
-from math import acos, asin, atan2, cos, inf, pi, sin, sqrt, tau
+from math import acos, asin, atan2, cos, inf, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
-from uvf.maths.curves.segments import Triple, checked_pairs, checked_radius
+from uvf.maths.curves.segments import Triple, checked_pairs, checked_radius, wrapped
 
 Floats = NDArray[np.float64]
 Place = tuple[float, float, float, float, float]
@@ -30,13 +30,6 @@ SMALL = 1e-11
 
 
 @compiled
-def _wrap(angle: float) -> float:
-    """-pi to pi."""
-    turns: float = np.floor(angle / tau + 0.5)
-    return angle - tau * turns
-
-
-@compiled
 def _two_angles(u: float, v: float, xi: float, eta: float, phi: float) -> tuple[float, float]:
     """First and last turn of a word of four turns, whose middle ones are known (tau and omega in the paper)."""
     delta = u - v
@@ -44,8 +37,8 @@ def _two_angles(u: float, v: float, xi: float, eta: float, phi: float) -> tuple[
     first = atan2(eta * a - xi * b, xi * a + eta * b)
     if 2.0 * (cos(delta) - cos(v) - cos(u)) + 3.0 < 0.0:
         first += pi
-    first = _wrap(first)
-    return first, _wrap(first - u + v - phi)
+    first = wrapped(first)
+    return first, wrapped(first - u + v - phi)
 
 
 @compiled
@@ -56,14 +49,14 @@ def _with_straight(formula: int, place: Place, best: float) -> Triple:
         xi, eta = x - s, y - 1.0 + c
         u = sqrt(xi * xi + eta * eta)
         t = atan2(eta, xi) if u > SMALL else 0.0
-        return (t, u, _wrap(phi - t)) if u < best else (0.0, inf, 0.0)
+        return (t, u, wrapped(phi - t)) if u < best else (0.0, inf, 0.0)
     xi, eta = x + s, y - 1.0 - c
     squared = xi * xi + eta * eta - 4.0
     if not -SMALL <= squared < best * best:
         return 0.0, inf, 0.0
     u = sqrt(max(squared, 0.0))
-    t = _wrap(atan2(eta, xi) + atan2(2.0, u))
-    return t, u, _wrap(t - phi)
+    t = wrapped(atan2(eta, xi) + atan2(2.0, u))
+    return t, u, wrapped(t - phi)
 
 
 @compiled
@@ -76,8 +69,8 @@ def _with_turns(formula: int, place: Place) -> Triple:
         if rho > 4.0 + SMALL:
             return 0.0, inf, 0.0
         u = -2.0 * asin(min(0.25 * rho, 1.0))
-        t = _wrap((atan2(eta, xi) if rho > SMALL else 0.0) + 0.5 * u + pi)
-        return t, u, _wrap(phi - t + u)
+        t = wrapped((atan2(eta, xi) if rho > SMALL else 0.0) + 0.5 * u + pi)
+        return t, u, wrapped(phi - t + u)
     xi, eta = x + s, y - 1.0 - c
     squared = xi * xi + eta * eta
     if formula == 4:
@@ -104,8 +97,8 @@ def _with_quarters(formula: int, place: Place, best: float) -> Triple:
         r = sqrt(max(squared, 0.0))
         if squared < -SMALL or r > best + 2.0:
             return 0.0, inf, 0.0
-        t = _wrap(atan2(eta, xi) + atan2(r, -2.0))
-        return t, 2.0 - r, _wrap(phi - 0.5 * pi - t)
+        t = wrapped(atan2(eta, xi) + atan2(r, -2.0))
+        return t, 2.0 - r, wrapped(phi - 0.5 * pi - t)
     xi, eta = x + s, y - 1.0 - c
     if formula == 10:
         squared = xi * xi + eta * eta - 4.0
@@ -113,12 +106,12 @@ def _with_quarters(formula: int, place: Place, best: float) -> Triple:
         if squared < -SMALL or r > best + 4.0:
             return 0.0, inf, 0.0
         t = atan2(r * xi - 2.0 * eta, -2.0 * xi - r * eta)
-        return t, 4.0 - r, _wrap(t - phi)
+        return t, 4.0 - r, wrapped(t - phi)
     rho = sqrt(xi * xi + eta * eta)
     if rho < 2.0 - SMALL or rho > best + 2.0:
         return 0.0, inf, 0.0
     t = atan2(xi, -eta)
-    return t, 2.0 - rho, _wrap(t + 0.5 * pi - phi)
+    return t, 2.0 - rho, wrapped(t + 0.5 * pi - phi)
 
 
 @compiled
@@ -145,7 +138,7 @@ def _solved(formula: int, place: Place, best: float) -> tuple[float, float, floa
 def _place(start: Triple, goal: Triple, radius: float) -> Place:
     dx, dy = (goal[0] - start[0]) / radius, (goal[1] - start[1]) / radius
     s, c = sin(start[2]), cos(start[2])
-    phi = _wrap(goal[2] - start[2])
+    phi = wrapped(goal[2] - start[2])
     return dx * c + dy * s, dy * c - dx * s, phi, sin(phi), cos(phi)
 
 

@@ -3,7 +3,7 @@
 Segments are an array (k, 2): signed length [m], negative = backwards, and curvature [1/m], positive = to the left of x towards y.
 """
 
-from math import cos, isfinite, sin
+from math import cos, isfinite, sin, tau
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,13 @@ Triple = tuple[float, float, float]
 
 MOST = 5
 """Segments of a Reeds-Shepp path at most; of a Dubins path there are three."""
+
+
+@compiled
+def wrapped(angle: float) -> float:
+    """The same angle [rad] from -pi to pi."""
+    turns: float = np.floor(angle / tau + 0.5)
+    return angle - tau * turns
 
 
 @compiled
