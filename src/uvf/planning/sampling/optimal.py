@@ -70,13 +70,14 @@ def _rewire(problem: Problem, tree: Tree, new: int, count: int, buffers: Buffers
 
 @compiled
 def grow_rrt_star(problem: Problem, tree: Tree, draws: Floats, buffers: Buffers) -> int:
-    """Grows a tree by an iteration for each row of ``draws`` (n, 5) until it is full; iterations done."""
+    """Grows a tree by an iteration for each row of ``draws`` (n, 5) until it is full, or no way can be shorter; iterations done."""
+    straight = distance(problem.space, problem.start, problem.goal)
     if tree.state[SIZE] == 1 and draws.shape[0] > 0:
-        try_goal(problem, tree, 0, distance(problem.space, problem.start, problem.goal), buffers)
+        try_goal(problem, tree, 0, straight, buffers)
     for k in range(draws.shape[0]):
-        if is_full(tree):
-            return k
         best = tree.costs[tree.state[GOAL]] if tree.state[GOAL] >= 0 else inf
+        if is_full(tree) or best <= straight + NOTHING:
+            return k
         target = draw(problem, tree, draws[k], buffers)
         if not can_be_on_way(problem, target, best):
             continue
