@@ -3,13 +3,15 @@
 A cell is a metre. The vehicle is a point that turns no tighter than ``RADIUS``; start and goal are drawn on cells that a wide way joins,
 with headings that leave room to drive on. Both have the same state space and the same ground: a point is free where its cell is.
 OMPL runs as its Python wheel offers it: a Python function says whether a state is valid, which is most of its time, its settings are the
-defaults, it looks at states ``RESOLUTION`` m apart, and the wheel has no seed for its planners. Own time includes all preparation but the field of clearances.
+defaults, it looks at states ``RESOLUTION`` m apart, and the wheel has no seed for its planners. Own time includes all preparation but
+the field of clearances.
 ``success %``: of all pairs and seeds; ``held %``: of the ways found, those that are free at every tenth of a metre and never turn
 tighter, by a check that knows neither planner; ``median / line``: median of the length over the distance, of all that was found;
 ``both / line``: the same of pairs and seeds where either planner found a way; ``peer``: own length over OMPL's there, median.
 ``cut short`` is the own way after ``CUTS`` tries to cut it short, in the same time. Without OMPL its rows are left out.
 """
 
+import itertools
 import sys
 import time
 from collections.abc import Callable
@@ -119,7 +121,7 @@ def ompl(ground: Ground, query: tuple[Triple, Triple], seed: int) -> Way | None:
     path = setup.getSolutionPath()
     states = [(s.getX(), s.getY(), s.getYaw()) for s in path.getStates()]
     parts, curve = [], np.zeros((MOST, 2))
-    for a, b in zip(states, states[1:], strict=False):
+    for a, b in itertools.pairwise(states):
         length = dubins_segments(a, b, RADIUS, curve)
         parts.append(sampled(a, curve, np.linspace(0.0, length, max(int(np.ceil(length / 0.1)), 1) + 1))[:, :3])
     return float(path.length()), np.vstack(parts)
