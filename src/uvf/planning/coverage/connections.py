@@ -117,7 +117,9 @@ class GroundConnections:
         places = np.array([(end.x, end.y) for end in self._ends]).reshape(-1, 2)
         self._ways: InsideWays = ways_inside(field, np.concatenate((self._entering[:, :2], places)))
         if not np.isfinite(self._ways.lengths[:, : self._count + len(places)]).all():
-            raise ValueError("the field, or an end of the path, is apart from the rest: no way inside joins them; plan each part on its own")
+            raise ValueError(
+                "the field, or an end of the path, is apart from the rest: no way inside joins them; plan each part on its own"
+            )
 
     def between(self) -> Floats:
         """Times (2 n, 2 n) [s] from the end of each to the beginning of each: the end of one is the beginning of its other way."""

@@ -1,7 +1,7 @@
 """In which direction swaths lie best: strips and a first judgement for each of many directions."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ Floats = NDArray[np.float64]
 EDGES = 24  # the longest, whose directions are tried
 SWEEP = math.radians(2.0)
 APART = math.radians(0.2)  # directions nearer than that are one
+JUDGED_AGAIN = 16  # directions
 KEPT_APART = math.radians(1.5)
 
 
@@ -27,9 +28,15 @@ class Candidate:
 
 
 def candidates(edges: Floats, speed: GroundSpeed, rules: StripRules, only: float | None = None) -> list[Candidate]:
-    """Candidates for a field with ``edges`` (m, 4) [m], the quickest first; in the direction ``only`` [rad] alone, if it is given."""
-    found = [_judged(edges, direction, speed, rules) for direction in (_directions(edges) if only is None else [only])]
-    return sorted(found, key=lambda each: each.time)
+    """Candidates for a field with ``edges`` (m, 4) [m], the quickest first; in the direction ``only`` [rad] alone, if it is given.
+
+    All directions are judged by swaths that cover everything, the best of them again by what ``rules`` ask for.
+    """
+    if only is not None:
+        return [_judged(edges, only, speed, rules)]
+    everything = [_judged(edges, direction, speed, replace(rules, share=1.0)) for direction in _directions(edges)]
+    best = best_apart(sorted(everything, key=lambda each: each.time), JUDGED_AGAIN)
+    return sorted((_judged(edges, each.direction, speed, rules) for each in best), key=lambda each: each.time)
 
 
 def best_apart(found: list[Candidate], count: int) -> list[Candidate]:

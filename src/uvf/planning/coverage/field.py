@@ -61,12 +61,6 @@ class Field:
         inner = _polygons(self.shape.buffer(-by, join_style="mitre", mitre_limit=MITRE))
         return Field(inner) if inner.area > LEAST_AREA else None
 
-    def without_slivers(self, width: float) -> "Field":
-        """The field without what is narrower than ``width`` [m], such as spikes of a mistyped corner; itself where none is left."""
-        inner = self.shape.buffer(-width / 2, join_style="mitre", mitre_limit=MITRE)
-        opened = _polygons(inner.buffer(width / 2, join_style="mitre", mitre_limit=MITRE).intersection(self.shape))
-        return Field(opened, self.notes) if opened.area > LEAST_AREA else self
-
 
 def make_field(outline: Floats, holes: Sequence[Floats] = ()) -> Field:
     """The field within ``outline`` (n, 2) and outside of ``holes`` [m, east and north].

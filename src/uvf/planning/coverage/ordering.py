@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 LONGEST_MOVED = 24  # swaths, in one move of a run
-EFFORT = 4_000_000  # of all restarts together, in swaths squared
+EFFORT = 600_000  # of all restarts together, in swaths squared
 MOST_RESTARTS = 600
 BETTER = 1e-7  # s
 
@@ -143,8 +143,8 @@ def _restarts(tour: Ints, cost: Floats, cuts: Ints) -> float:
     return best
 
 
-def best_tour(cost: Floats, first: list[Ints], seed: int = 0, effort: float = 1.0) -> Ints:
-    """A quick tour (n,) of oriented swaths from the orders ``first``. cost: as in ``tour_cost``; effort: 0 = no restarts.
+def best_tour(cost: Floats, first: list[Ints], seed: int = 0, restarts: bool = True) -> Ints:
+    """A quick tour (n,) of oriented swaths from the orders ``first``. cost: as in ``tour_cost``; Without ``restarts`` it is only improved.
 
     It is no longer than the best of ``first``; the same seed gives the same tour.
     """
@@ -155,10 +155,10 @@ def best_tour(cost: Floats, first: list[Ints], seed: int = 0, effort: float = 1.
     for tour in tours:
         improve(tour, cost)
     best = min(tours, key=lambda tour: tour_cost(tour, cost))
-    restarts = int(min(effort * EFFORT / n**2, MOST_RESTARTS))
-    if n >= 4 and restarts > 0:
+    if restarts and n >= 4:
         rng = np.random.default_rng(seed)
-        cuts = np.sort(np.stack([rng.choice(n + 1, 3, replace=False) for _ in range(restarts)]), axis=1)
+        count = int(min(EFFORT / n**2, MOST_RESTARTS)) + 1
+        cuts = np.sort(np.stack([rng.choice(n + 1, 3, replace=False) for _ in range(count)]), axis=1)
         _restarts(best, cost, cuts)
     return best
 

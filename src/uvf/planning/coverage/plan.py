@@ -72,7 +72,9 @@ class CoveragePlan:
         passes = np.flatnonzero(self.kinds != TRANSIT)
         ways = [self.segments[a + 1 : b] for a, b in zip(passes[:-1], passes[1:], strict=True)]
         ends = [self.segments[b, 2] - self.segments[a, 2] for a, b in zip(passes[:-1], passes[1:], strict=True)]
-        return sum(bool(np.abs(way[:, 3] * way[:, 4]).sum() > TURNED or abs(np.sin(end / 2)) > TURNED) for way, end in zip(ways, ends, strict=True))
+        return sum(
+            bool(np.abs(way[:, 3] * way[:, 4]).sum() > TURNED or abs(np.sin(end / 2)) > TURNED) for way, end in zip(ways, ends, strict=True)
+        )
 
     @cached_property
     def covered(self) -> float:

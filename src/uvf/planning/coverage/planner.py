@@ -5,7 +5,7 @@ that the search begins with.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -27,8 +27,7 @@ from uvf.planning.coverage.vehicles import GroundVehicle, SurveyAircraft
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SLIVER = 0.02  # of the width: what is narrower is not gone along ...
-MOST_LOST = 0.004  # ... unless it is more of the area than that
+GAP = 0.25  # of the width: an aircraft flies on over shorter gaps without a break
 TOURED, REFINED = 6, 2  # directions
 MOST_SWATHS = 1_200  # of a tour
 
@@ -58,7 +57,7 @@ def _toured(candidate: Candidate, connections: Connections, task: CoverageTask, 
     radius = max(1, len(candidate.swaths) // 2)
     firsts = rule_orders(groups, [skip for skip in range(1, 9) if skip <= radius])
     cost = _costs(connections, task)
-    order = best_tour(cost, firsts, task.seed, effort=0.0)
+    order = best_tour(cost, firsts, task.seed, restarts=False)
     return _Tour(candidate.direction, candidate.swaths, order, connections, tour_cost(order, cost))
 
 
@@ -66,6 +65,12 @@ def _refined(tour: _Tour, task: CoverageTask) -> _Tour:
     cost = _costs(tour.connections, task)
     order = best_tour(cost, [tour.order], task.seed)
     return _Tour(tour.direction, tour.swaths, order, tour.connections, tour_cost(order, cost))
+
+
+def _best(tours: list[_Tour], task: CoverageTask) -> _Tour:
+    """The best of the tours, refined; they are in the order of their swaths' lengths where these are to be least."""
+    likely = tours[:1] if task.least == "swaths" else sorted(tours, key=lambda tour: tour.time)[:REFINED]
+    return min((_refined(tour, task) for tour in likely), key=lambda tour: tour.time)
 
 
 def _check_count(candidate: Candidate, width: float) -> None:
@@ -133,12 +138,9 @@ class _Path:
         segments = np.concatenate(self.segments)
         time = sum(speed.time(course, curvature, length) for _, _, course, curvature, length in segments.tolist())
         cells = tuple(decompose(task.field.edges, direction))
-        return CoveragePlan(task.field, task.width, direction % math.pi, swaths, segments, np.array(self.kinds, dtype=np.int64), time, cells)
-
-
-def _without_slivers(field: Field, width: float) -> Field:
-    opened = field.without_slivers(SLIVER * width)
-    return opened if opened.area >= (1.0 - MOST_LOST) * field.area else field
+        return CoveragePlan(
+            task.field, task.width, direction % math.pi, swaths, segments, np.array(self.kinds, dtype=np.int64), time, cells
+        )
 
 
 def _lengthened(swaths: Floats, by: float) -> Floats:
@@ -156,12 +158,12 @@ class _Aerial:
     vehicle: SurveyAircraft
 
     def plan(self) -> CoveragePlan:
-        edges = _without_slivers(self.task.field, self.task.width).edges
-        rules = StripRules(self.task.width, self.vehicle.turn_length, self.task.width)
+        edges = self.task.field.edges
+        turn = self.vehicle.turn_length if self.task.least == "time" else 0.0
+        rules = StripRules(self.task.width, turn, GAP * self.task.width, self.task.share)
         found = best_apart(candidates(edges, self.vehicle.speed, rules, self.task.direction), TOURED)
         tours = [self._tour(each, edges) for each in found]
-        tours = sorted(tours, key=lambda tour: tour.time)[:REFINED]
-        best = min((_refined(tour, self.task) for tour in tours), key=lambda tour: tour.time)
+        best = _best(tours, self.task)
         path = _Path()
         swaths = path.add_tour(best, (self.task.start, self.task.end), (self.vehicle.lead_in, self.vehicle.lead_out))
         return path.plan(self.task, swaths, best.direction, self.vehicle.speed)
@@ -186,7 +188,7 @@ class _Driven:
         start = self.task.start
         here = next(field.rings)[0] if start is None else np.array((start.x, start.y))
         passes = border_passes(field, width, self.vehicle.headlands, here)
-        inner = field.shrunk(self.vehicle.headlands * width) if passes else _without_slivers(field, width)
+        inner = field.shrunk(self.vehicle.headlands * width) if passes else field
         for ring in passes:
             if start is not None:
                 self._join(path, start, End(*ring[0].tolist()))
@@ -204,15 +206,16 @@ class _Driven:
         path.add(GroundConnections(np.empty((0, 4)), self.vehicle, self.task.field, (start, end)).way(start, end), TRANSIT)
 
     def _best_tour(self, inner: Field, start: End | None) -> _Tour:
-        task = CoverageTask(inner, self.task.width, 0.0, self.task.direction, start, self.task.end, self.task.seed)
-        rules = StripRules(task.width, task.width + math.pi * self.vehicle.radius)
+        task = replace(self.task, field=inner, start=start)
+        turn = task.width + math.pi * self.vehicle.radius if task.least == "time" else 0.0
+        rules = StripRules(task.width, turn, 0.0, task.share)
         found = best_apart(candidates(inner.edges, self._speed, rules, task.direction), TOURED)
         tours = []
         for each in found:
             swaths = self._inside(_lengthened(each.swaths, self.task.overshoot))
             connections = GroundConnections(swaths, self.vehicle, self.task.field, (start, task.end))
             tours.append(_toured(Candidate(each.direction, swaths, each.time), connections, task, inner.edges))
-        return min((_refined(tour, task) for tour in sorted(tours, key=lambda tour: tour.time)[:REFINED]), key=lambda tour: tour.time)
+        return _best(tours, task)
 
     def _inside(self, swaths: Floats) -> Floats:
         """The swaths cut off at the border of the field."""
