@@ -1,9 +1,10 @@
 """Coverage plans of fields: those of ``DIR/coverage``, and twenty random ones with concave outlines and holes.
 
-An aircraft of 25 m/s turns with 55 m radius and covers 16 m a swath; a field less than 25 m wide (twice area over border) is driven by a ground vehicle that
-works 1.5 m wide (0.5 m on fields less than 4 m wide) and turns on the spot. ``swaths / bound`` is the length of swaths and headland
-passes over area / width, ``path / bound`` that of the whole path with its turns. ``covered`` is the exact union of the swept
-rectangles.
+An aircraft of 25 m/s turns with 55 m radius and covers 16 m a swath. A field less than 25 m wide (twice its area over the length of its
+borders) is driven by a ground vehicle that works 1.5 m wide (0.5 m on fields less than 4 m wide) and turns on the spot.
+``swaths / bound`` is the length of swaths and headland passes over area / width, ``path / bound`` that of the whole path with its turns.
+``slant / bound`` is by how much square ends at slanted borders lengthen swaths that cover every corner. ``covered`` is the exact union of
+the swept rectangles.
 ``python -m benchmarks.planning.coverage OUT [DIR]`` draws each plan.
 """
 

@@ -4,6 +4,7 @@ Boustrophedon cells, Choset, "Coverage of known spaces: the boustrophedon cellul
 along the swaths sweeps over the field; where the number of pieces that it is cut into changes, cells end and begin.
 """
 
+import itertools
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -50,8 +51,8 @@ def decompose(edges: Floats, direction: float) -> list[Cell]:
     levels = np.unique(turned[:, 1::2])
     cells: list[Cell] = []
     above: list[tuple[int, Span]] = []
-    for low, high in zip(levels[:-1], levels[1:], strict=True):
-        spans = _spans(turned, float(low), float(high))
+    for low, high in itertools.pairwise(levels.tolist()):
+        spans = _spans(turned, low, high)
         following: list[tuple[int, Span]] = []
         touching = [[k for k, (_, span) in enumerate(above) if _touch(span, begin)] for begin, _ in spans]
         for number, (begin, end) in enumerate(spans):
@@ -61,12 +62,12 @@ def decompose(edges: Floats, direction: float) -> list[Cell]:
                 index = above[olds[0]][0]
             else:
                 index = len(cells)
-                cells.append(Cell([float(low)], [begin[0]], [begin[1]]))
+                cells.append(Cell([low], [begin[0]], [begin[1]]))
                 for old in (above[k][0] for k in olds):
                     cells[index].neighbours.add(old)
                     cells[old].neighbours.add(index)
-            _extend(cells[index], float(low), begin)
-            _extend(cells[index], float(high), end)
+            _extend(cells[index], low, begin)
+            _extend(cells[index], high, end)
             following.append((index, end))
         above = following
     return cells

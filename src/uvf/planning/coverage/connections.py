@@ -1,5 +1,6 @@
 """How a vehicle gets from one swath to the next: Dubins paths over ground for an aircraft, ways inside the field for a ground vehicle."""
 
+import itertools
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -16,6 +17,7 @@ from uvf.planning.coverage.vehicles import GroundVehicle, SurveyAircraft
 Floats = NDArray[np.float64]
 
 HEADINGS = 24  # tried at an end whose course is free
+ONE_LINE = 1e-6  # m, between swaths that lie on one line
 
 
 class Connections(Protocol):
@@ -35,6 +37,9 @@ class Connections(Protocol):
 
     def way(self, one: int | End, other: int | End) -> Floats:
         """Segments (k, 5) x, y [m], course [rad], curvature [1/m], length [m] from the end of one swath, or a place, to another."""
+
+    def straight_on(self, one: int, other: int) -> bool:
+        """Whether the second swath lies straight on behind the first, so near that there is no room for lead-out and lead-in."""
 
 
 def both_ways(swaths: Floats) -> tuple[Floats, Floats]:
@@ -64,7 +69,27 @@ class AirConnections:
     def between(self) -> Floats:
         """Times (2 n, 2 n) [s] from the end of each to the beginning of each."""
         entering, leaving = self._poses
-        return self._times(leaving, entering)
+        times = self._times(leaving, entering)
+        ahead = self._ahead
+        near = np.isfinite(ahead)
+        times[near] = (ahead / self.vehicle.speed.at(leaving[:, 2])[:, None])[near]
+        return times
+
+    @cached_property
+    def _ahead(self) -> Floats:
+        """(2 n, 2 n) m, below 0: how far the lead-in of one begins behind the end of the other's lead-out on one line; else infinite."""
+        entering, leaving = self._poses
+        c, s = np.cos(leaving[:, 2])[:, None], np.sin(leaving[:, 2])[:, None]
+        dx, dy = entering[:, 0] - leaving[:, 0][:, None], entering[:, 1] - leaving[:, 1][:, None]
+        ahead, aside = c * dx + s * dy, np.abs(c * dy - s * dx)
+        same = np.cos(entering[:, 2] - leaving[:, 2][:, None]) > 1.0 - 1e-9
+        near = same & (aside < ONE_LINE) & (ahead < 0.0) & (ahead > -self.vehicle.lead_in - self.vehicle.lead_out)
+        found: Floats = np.where(near, ahead, np.inf)
+        return found
+
+    def straight_on(self, one: int, other: int) -> bool:
+        """Whether the second swath lies straight on behind the first, so near that there is no room for lead-out and lead-in."""
+        return bool(np.isfinite(self._ahead[one, other]))
 
     def along(self) -> Floats:
         """Times (2 n,) [s] along each, lead-in and lead-out included."""
@@ -161,8 +186,12 @@ class GroundConnections:
             own = side.course if isinstance(side, End) else float(poses[side, 2])
             courses[k] = own if own is not None else courses[k]
         poses = np.column_stack((corners, courses))
-        found = [segments_of(a, b, self._vehicle.motion) for a, b in zip(poses[:-1], poses[1:], strict=True)]
+        found = [segments_of(a, b, self._vehicle.motion) for a, b in itertools.pairwise(poses)]
         return np.concatenate([np.empty((0, 5)), *found])
+
+    def straight_on(self, one: int, other: int) -> bool:
+        """Never: it needs no room."""
+        return False
 
 
 def straights(corners: Floats) -> Floats:
@@ -170,7 +199,8 @@ def straights(corners: Floats) -> Floats:
     away = np.diff(corners, axis=0)
     lengths = np.hypot(*away.T)
     courses = np.arctan2(away[:, 1], away[:, 0])
-    return np.column_stack((corners[:-1], courses, np.zeros(len(away)), lengths))[lengths > 1e-6]
+    found: Floats = np.column_stack((corners[:-1], courses, np.zeros(len(away)), lengths))[lengths > 1e-6]
+    return found
 
 
 def _courses(corners: Floats) -> Floats:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from uvf.maths.compiled import compiled
 
@@ -36,7 +36,7 @@ class GroundSpeed:
                 f"wait for less than {(1.0 - LEAST_SHARE) * self.airspeed:.1f} m/s or fly faster"
             )
 
-    def at(self, course: float | Floats) -> Floats:
+    def at(self, course: ArrayLike) -> Floats:
         """Ground speed [m/s] on a course or courses (k,) [rad]."""
         along = self.wind[0] * np.cos(course) + self.wind[1] * np.sin(course)
         across = self.wind[1] * np.cos(course) - self.wind[0] * np.sin(course)
@@ -66,4 +66,5 @@ def turning(table: Floats, course: float) -> float:
     whole = np.floor(course / (2 * np.pi))
     place = (course / (2 * np.pi) - whole) * steps
     k = min(int(place), steps - 1)
-    return whole * table[steps] + table[k] + (place - k) * (table[k + 1] - table[k])
+    found: float = whole * table[steps] + table[k] + (place - k) * (table[k + 1] - table[k])
+    return found

@@ -37,9 +37,7 @@ def ways_inside(field: Field, places: Floats) -> InsideWays:
     """Shortest ways inside ``field`` among ``places`` (p, 2) [m], which lie in it. Raises ValueError for more than 3 000 places."""
     every = np.concatenate((places, _bends(field)))
     if len(every) > MOST_PLACES:
-        raise ValueError(
-            f"{len(every)} ends of swaths and corners, {MOST_PLACES} at most for ways inside; widen the swaths or simplify the field"
-        )
+        raise ValueError(f"{len(every)} ends of swaths and corners, {MOST_PLACES} at most; widen the swaths or simplify the field")
     one, other = np.triu_indices(len(every), 1)
     room = field.shape.buffer(TOLERANCE)
     shapely.prepare(room)

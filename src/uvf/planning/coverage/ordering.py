@@ -32,7 +32,8 @@ def tour_cost(tour: Ints, cost: Floats) -> float:
     for each in tour:
         sum_ += cost[before, each]
         before = each
-    return sum_ + cost[before, last]
+    total: float = sum_ + cost[before, last]
+    return total
 
 
 @compiled

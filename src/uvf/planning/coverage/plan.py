@@ -1,5 +1,6 @@
 """What a coverage planner returns: swaths in order, the whole path, and figures of it that are worked out apart from the planning."""
 
+import itertools
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -70,11 +71,12 @@ class CoveragePlan:
     def turns(self) -> int:
         """Number of transits between swaths that are not straight on."""
         passes = np.flatnonzero(self.kinds != TRANSIT)
-        ways = [self.segments[a + 1 : b] for a, b in zip(passes[:-1], passes[1:], strict=True)]
-        ends = [self.segments[b, 2] - self.segments[a, 2] for a, b in zip(passes[:-1], passes[1:], strict=True)]
-        return sum(
-            bool(np.abs(way[:, 3] * way[:, 4]).sum() > TURNED or abs(np.sin(end / 2)) > TURNED) for way, end in zip(ways, ends, strict=True)
-        )
+        return sum(self._is_turn(int(a), int(b)) for a, b in itertools.pairwise(passes))
+
+    def _is_turn(self, one: int, other: int) -> bool:
+        way = self.segments[one + 1 : other]
+        end = self.segments[other, 2] - self.segments[one, 2]
+        return bool(np.abs(way[:, 3] * way[:, 4]).sum() > TURNED or abs(np.sin(end / 2)) > TURNED)
 
     @cached_property
     def covered(self) -> float:

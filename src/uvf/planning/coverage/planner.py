@@ -4,6 +4,7 @@ Each direction is judged by the time of its swaths and turns, the best of them b
 that the search begins with.
 """
 
+import itertools
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -116,14 +117,17 @@ class _Path:
     def add_tour(self, tour: _Tour, ends: tuple[End | None, End | None], leads: tuple[float, float] = (0.0, 0.0)) -> Floats:
         """The tour with the ways to, between and from its swaths; returns these (n, 4) [m] as they are gone along."""
         oriented = np.array([tour.swaths[each // 2][[2, 3, 0, 1] if each % 2 else [0, 1, 2, 3]] for each in tour.order]).reshape(-1, 4)
-        before: int | End | None = ends[0]
-        for each, swath in zip(tour.order.tolist(), oriented, strict=True):
-            if before is not None:
-                self.add(tour.connections.way(before, each), TRANSIT)
-            self._add_swath(swath, leads)
-            before = each
-        if before is not None and ends[1] is not None:
-            self.add(tour.connections.way(before, ends[1]), TRANSIT)
+        ways, order = tour.connections, tour.order.tolist()
+        on = [False, *(ways.straight_on(one, other) for one, other in itertools.pairwise(order)), False]
+        for k, swath in enumerate(oriented):
+            before = order[k - 1] if k > 0 else ends[0]
+            if on[k]:
+                self.add(straights(np.array((oriented[k - 1, 2:], swath[:2]))), TRANSIT)
+            elif before is not None:
+                self.add(ways.way(before, order[k]), TRANSIT)
+            self._add_swath(swath, (0.0 if on[k] else leads[0], 0.0 if on[k + 1] else leads[1]))
+        if order and ends[1] is not None:
+            self.add(ways.way(order[-1], ends[1]), TRANSIT)
         return oriented
 
     def _add_swath(self, swath: Floats, leads: tuple[float, float]) -> None:
@@ -221,5 +225,5 @@ class _Driven:
         """The swaths cut off at the border of the field."""
         room = self.task.field.shape.buffer(1e-6)
         lines = shapely.get_parts(shapely.intersection(shapely.linestrings(swaths.reshape(-1, 2, 2)), room))
-        found = shapely.get_coordinates([line for line in lines if line.length > 1e-3]).reshape(-1, 4)
+        found: Floats = shapely.get_coordinates([line for line in lines if line.length > 1e-3]).reshape(-1, 4)
         return found

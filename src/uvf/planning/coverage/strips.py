@@ -34,7 +34,8 @@ Line = tuple[float, float, float, float]
 class StripRules:
     """What swaths are made for: ``width`` [m] of the tool, ``each`` [m], the length that one more turn is worth, and ``gap`` [m].
 
-    Pieces in one strip whose gap is no longer than ``gap`` become one swath; others are reached by a turn, or straight on. share: of the area that must be covered, at least.
+    Pieces in one strip whose gap is no longer than ``gap`` become one swath; others are reached by a turn, or straight on. share: of the
+    area that must be covered, at least.
     """
 
     width: float
@@ -91,7 +92,8 @@ def rotated(lines: Floats, angle: float) -> Floats:
     """Lines (m, 4) [m] turned about the origin by ``angle`` [rad], counter-clockwise."""
     c, s = math.cos(angle), math.sin(angle)
     matrix = np.array(((c, s), (-s, c)))
-    return np.ascontiguousarray(np.hstack((lines[:, :2] @ matrix, lines[:, 2:] @ matrix)))
+    turned: Floats = np.ascontiguousarray(np.hstack((lines[:, :2] @ matrix, lines[:, 2:] @ matrix)))
+    return turned
 
 
 def _candidates(edges: Floats, count: int, width: float) -> Floats:
@@ -103,11 +105,11 @@ def _candidates(edges: Floats, count: int, width: float) -> Floats:
         return even
     level = edges[np.abs(edges[:, 3] - edges[:, 1]) < 1e-3 * width]
     jumps = np.unique(level[:, 1::2])[: MOST_BOUNDARIES // 10]
-    found = np.unique(np.concatenate((even, jumps)))
+    found: Floats = np.unique(np.concatenate((even, jumps)))
     apart = np.concatenate(((True,), np.diff(found) > ALIKE * width))
-    found = found[apart]
-    found[-1] = high
-    return found
+    kept: Floats = found[apart]
+    kept[-1] = high
+    return kept
 
 
 def _lines(edges: Floats, boundaries: Floats, numbers: Floats) -> tuple[list[Line], float]:
@@ -129,8 +131,8 @@ def pieces_within(edges: Floats, strip: tuple[float, float], numbers: Floats, ev
     """Writes the pieces (k, 3), from x to x [m] and their area [m^2], of the field within a strip into ``out``, in order.
 
     edges: (m, 4) [m], the inside to the left; strip: lower and upper y [m]; numbers: gap [m] up to which pieces are joined, height [m]
-    from which on the field counts, length [m] that a piece costs besides its own. events: (4 m + 2, 3), overwritten; out: (2 m + 2, 3). Returns the
-    number of pieces and the area [m^2] that lies in none.
+    from which on the field counts, length [m] that a piece costs besides its own. events: (4 m + 2, 3), overwritten; out: (2 m + 2, 3).
+    Returns the number of pieces and the area [m^2] that lies in none.
     """
     count = _height_events(edges, strip[0], strip[1], events)
     _sort(events, count)

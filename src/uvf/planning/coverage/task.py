@@ -28,8 +28,9 @@ class CoverageTask:
     """Cover ``field`` with a tool ``width`` [m] wide.
 
     share: of the area that must be covered at least; 1: every corner, at the price of longer swaths at slanted borders (a camera sees
-    more than ``width``, so that nothing is missed). overshoot: [m], by which each swath is longer at both ends. direction: [rad] of the swaths, None: the best. start, end: of the path,
-    None: anywhere. least: what is made small: the time of the whole path, or the length of the swaths, whatever their turns take. seed: of the search for the order.
+    more than ``width``, so that nothing is missed). overshoot: [m], by which each swath is longer at both ends. direction: [rad] of the
+    swaths, None: the best. start, end: of the path, None: anywhere. least: what is made small: the time of the whole path, or the length
+    of the swaths, whatever their turns take. seed: of the search for the order.
     """
 
     field: Field

@@ -34,7 +34,8 @@ def speed_on(motion: Motion, course: float) -> float:
     """Ground speed [m/s] on a course [rad]."""
     c, s = np.cos(course), np.sin(course)
     across = motion.wind[1] * c - motion.wind[0] * s
-    return motion.wind[0] * c + motion.wind[1] * s + np.sqrt(motion.airspeed**2 - across**2)
+    speed: float = motion.wind[0] * c + motion.wind[1] * s + np.sqrt(motion.airspeed**2 - across**2)
+    return speed
 
 
 @compiled
