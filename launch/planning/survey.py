@@ -78,7 +78,7 @@ class Survey:
     def mission_text(self) -> str:
         """The mission file."""
         wishes, first = self.wishes, self.items[self.items[0].kind == "speed"]
-        course = first.course or 0.0
+        course = float(self.plan.segments[0, 2])
         back = APPROACH * self.airspeed
         x, y = first.x - back * math.cos(course), first.y - back * math.sin(course)
         wind = f"wind: {{steady: [{wishes.wind[0]:g}, {wishes.wind[1]:g}, 0.0]}}\n" if any(wishes.wind) else ""
@@ -182,4 +182,5 @@ def _row(item: Waypoint) -> str:
         return f"{{kind: trigger_distance, distance: {item.distance:g}}}"
     if item.kind == "speed":
         return f"{{kind: speed, speed: {item.speed:g}}}"
-    return f"{{x: {item.x:.2f}, y: {item.y:.2f}, z: {item.z:.1f}, course: {item.course or 0.0:.5f}}}"
+    course = "" if item.course is None else f", course: {item.course:.5f}"
+    return f"{{x: {item.x:.2f}, y: {item.y:.2f}, z: {item.z:.1f}{course}}}"

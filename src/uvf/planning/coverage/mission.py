@@ -31,36 +31,37 @@ class SurveyFlight:
 
 
 def survey_mission(plan: CoveragePlan, flight: SurveyFlight) -> list[Waypoint]:
-    """Mission items of the plan, world frame (east, north): all waypoints have courses, so that the turns between are Dubins paths.
+    """Mission items of the plan, world frame (east, north).
 
-    Of each swath: where the lead-in begins, where it begins itself (the camera starts), and where it or its lead-out ends (it stops).
+    Of each swath: where the lead-in begins, at the swath's course, so that a Dubins path leads there; where it begins itself (the camera
+    starts); and where it or its lead-out ends (the camera stops). Between swaths on one line there is neither lead-in nor lead-out.
     """
     items = [] if flight.speed == 0.0 else [Waypoint(kind="speed", speed=flight.speed)]
-    for index in np.flatnonzero(plan.kinds == SWATH):
+    for index in np.flatnonzero(plan.kinds == SWATH).tolist():
         row = plan.segments[index]
-        before = min(flight.lead_in, _straight(plan, int(index), -1))
-        after = min(flight.lead_out, _straight(plan, int(index), 1))
-        if before > NEAR:
-            items.append(_waypoint(row, -before, flight.height))
-        items.append(_waypoint(row, 0.0, flight.height))
+        before, after = _straight(plan, index, -1), _straight(plan, index, 1)
+        if before is not None and min(flight.lead_in, before) > NEAR:
+            items.append(_waypoint(row, -min(flight.lead_in, before), flight.height, True))
+        items.append(_waypoint(row, 0.0, flight.height, before is not None and min(flight.lead_in, before) <= NEAR))
         items.append(Waypoint(kind="trigger_distance", distance=round(flight.trigger, DECIMALS)))
-        end = float(row[4]) + (after if after > NEAR else 0.0)
-        items.append(_waypoint(row, end, flight.height))
+        end = float(row[4]) + min(flight.lead_out, after or 0.0)
+        items.append(_waypoint(row, end, flight.height, False))
         items.append(Waypoint(kind="trigger_distance", distance=0.0))
     return items
 
 
-def _waypoint(swath: Floats, along: float, height: float) -> Waypoint:
-    x, y, course = moved(swath[:3], 0.0, along).tolist()
-    return Waypoint(round(x, DECIMALS), round(y, DECIMALS), round(height, DECIMALS), course=round(math.remainder(course, math.tau), 5))
+def _waypoint(swath: Floats, along: float, height: float, has_course: bool) -> Waypoint:
+    x, y, angle = moved(swath[:3], 0.0, along).tolist()
+    course = round(math.remainder(angle, math.tau), 5) if has_course else None
+    return Waypoint(round(x, DECIMALS), round(y, DECIMALS), round(height, DECIMALS), course=course)
 
 
-def _straight(plan: CoveragePlan, index: int, step: int) -> float:
-    """Length [m] that is gone straight on before (step -1) or behind (step 1) a swath; half of it where another swath begins there."""
+def _straight(plan: CoveragePlan, index: int, step: int) -> float | None:
+    """Length [m] that is gone straight on before (step -1) or behind (step 1) a swath; None where that leads to another swath."""
     found, k, course = 0.0, index + step, plan.segments[index, 2]
     while 0 <= k < len(plan.segments) and plan.segments[k, 3] == 0.0 and math.cos(plan.segments[k, 2] - course) > 1.0 - 1e-9:
         if plan.kinds[k] != TRANSIT:
-            return found / 2
+            return None
         found += float(plan.segments[k, 4])
         k += step
     return found
