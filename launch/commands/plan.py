@@ -34,20 +34,16 @@ def survey(
     frontlap: Annotated[float, typer.Option(callback=Share, help="Overlap of pictures along a swath, 0 to 0.95.")] = 0.75,
     fov: Annotated[
         tuple[float, float] | None,
-        typer.Option(metavar="DEG DEG", help="Field of view across and along the swath; by default the vehicle's."),
+        typer.Option(metavar="DEG DEG", help="Field of view across and along; by default the vehicle's."),
     ] = None,
     sensor: Annotated[
         tuple[float, float, float] | None, typer.Option(metavar="mm mm mm", help="Instead: sensor width and height, focal length.")
     ] = None,
-    spacing: Annotated[float | None, typer.Option(metavar="m", callback=Positive, help="Between swaths, instead of by the camera.")] = None,
-    trigger: Annotated[
-        float | None, typer.Option(metavar="m", callback=Positive, help="Between pictures, instead of by the camera.")
-    ] = None,
+    spacing: Annotated[float | None, typer.Option(metavar="m", callback=Positive, help="Between swaths, if not by the camera.")] = None,
+    trigger: Annotated[float | None, typer.Option(metavar="m", callback=Positive, help="Between pictures, if not by the camera.")] = None,
     wind: Annotated[tuple[float, float], typer.Option(metavar="EAST NORTH", help="Wind expected [m/s], where it blows to.")] = (0.0, 0.0),
     airspeed: Annotated[float | None, typer.Option(metavar="m/s", callback=Positive, help="By default the vehicle's cruise.")] = None,
-    direction: Annotated[
-        float | None, typer.Option(metavar="deg", help="Of the swaths, from north clockwise; by default the best.")
-    ] = None,
+    direction: Annotated[float | None, typer.Option(metavar="deg", help="Of the swaths, from north; by default the best.")] = None,
     at: Annotated[tuple[float, float] | None, typer.Option(metavar="X Y", help="Put the area's middle there in the world [m].")] = None,
     seed: Annotated[int, typer.Option(help="Of the search and of the mission.")] = 1,
     out: Annotated[Path | None, typer.Option(help="Mission file to write; by default it is printed.")] = None,

@@ -71,7 +71,7 @@ class Survey:
             *plan.field.notes,
             f"{plan.field.area / 1e4:.2f} ha, {len(plan.swaths)} swaths {plan.width:.1f} m apart, "
             f"pictures every {self.flight.trigger:.1f} m from {self.flight.height:.0f} m",
-            f"swaths {plan.swath_length:.0f} m, {plan.swath_ratio:.3f} of the least; whole path {plan.length:.0f} m, {plan.length_ratio:.2f}",
+            f"swaths {plan.swath_length:.0f} m, {plan.swath_ratio:.3f} of the least; path {plan.length:.0f} m, {plan.length_ratio:.2f}",
             f"covered {100 * plan.covered:.2f} % within half a spacing; {plan.turns} turns; {plan.time:.0f} s",
         ]
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.planning.coverage.ground_speed import GroundSpeed
-from uvf.planning.coverage.strips import StripRules, swaths
+from uvf.planning.coverage.strips import StripRules, rotated, swaths
 
 Floats = NDArray[np.float64]
 
@@ -15,6 +15,7 @@ EDGES = 24  # the longest, whose directions are tried
 SWEEP = math.radians(2.0)
 APART = math.radians(0.2)  # directions nearer than that are one
 JUDGED_AGAIN = 16  # directions
+ONE_LINE = 1e-6  # m, between swaths of one strip
 KEPT_APART = math.radians(1.5)
 
 
@@ -54,7 +55,14 @@ def _judged(edges: Floats, direction: float, speed: GroundSpeed, rules: StripRul
     lines = swaths(edges, direction, rules)
     slow = float((1.0 / speed.at(np.array((direction, direction + math.pi)))).mean())
     lengths = float(np.hypot(*(lines[:, 2:] - lines[:, :2]).T).sum())
-    return Candidate(direction, lines, lengths * slow + len(lines) * rules.each / speed.airspeed)
+    return Candidate(direction, lines, lengths * slow + _turns(rotated(lines, -direction), rules.each) / speed.airspeed)
+
+
+def _turns(lines: Floats, each: float) -> float:
+    """Length [m] that turns are worth: one for each swath, but no more than the gap for one that lies straight on behind another."""
+    straight_on = np.abs(np.diff(lines[:, 1])) < ONE_LINE
+    gaps = np.where(straight_on, np.minimum(lines[1:, 0] - lines[:-1, 2], each), each)
+    return float(gaps.sum()) + each
 
 
 def _directions(edges: Floats) -> list[float]:

@@ -29,7 +29,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 GAP = 0.25  # of the width: an aircraft flies on over shorter gaps without a break
-TOURED, REFINED = 6, 2  # directions
+TOURED, TOURED_SHORTEST, REFINED = 8, 6, 3  # directions
 MOST_SWATHS = 1_200  # of a tour
 
 
@@ -51,6 +51,15 @@ class _Tour:
     time: float
 
 
+def _promising(edges: Floats, speed: GroundSpeed, rules: StripRules, task: CoverageTask) -> list[Candidate]:
+    """Candidates worth a tour: those with the shortest swaths, and for the least time those that are the quickest by a rule of thumb."""
+    rules = replace(rules, share=task.share)
+    shortest = candidates(edges, speed, replace(rules, each=0.0), task.direction)
+    if task.least == "swaths":
+        return shortest[:1]
+    return best_apart(candidates(edges, speed, rules, task.direction), TOURED) + best_apart(shortest, TOURED_SHORTEST)
+
+
 def _toured(candidate: Candidate, connections: Connections, task: CoverageTask, edges: Floats) -> _Tour:
     """A tour without restarts, from the back-and-forth orders of the cells."""
     _check_count(candidate, task.width)
@@ -69,8 +78,8 @@ def _refined(tour: _Tour, task: CoverageTask) -> _Tour:
 
 
 def _best(tours: list[_Tour], task: CoverageTask) -> _Tour:
-    """The best of the tours, refined; they are in the order of their swaths' lengths where these are to be least."""
-    likely = tours[:1] if task.least == "swaths" else sorted(tours, key=lambda tour: tour.time)[:REFINED]
+    """The quickest of the tours, refined."""
+    likely = sorted(tours, key=lambda tour: tour.time)[:REFINED]
     return min((_refined(tour, task) for tour in likely), key=lambda tour: tour.time)
 
 
@@ -163,9 +172,9 @@ class _Aerial:
 
     def plan(self) -> CoveragePlan:
         edges = self.task.field.edges
-        turn = self.vehicle.turn_length if self.task.least == "time" else 0.0
-        rules = StripRules(self.task.width, turn, GAP * self.task.width, self.task.share)
-        found = best_apart(candidates(edges, self.vehicle.speed, rules, self.task.direction), TOURED)
+        found = _promising(
+            edges, self.vehicle.speed, StripRules(self.task.width, self.vehicle.turn_length, GAP * self.task.width), self.task
+        )
         tours = [self._tour(each, edges) for each in found]
         best = _best(tours, self.task)
         path = _Path()
@@ -211,9 +220,8 @@ class _Driven:
 
     def _best_tour(self, inner: Field, start: End | None) -> _Tour:
         task = replace(self.task, field=inner, start=start)
-        turn = task.width + math.pi * self.vehicle.radius if task.least == "time" else 0.0
-        rules = StripRules(task.width, turn, 0.0, task.share)
-        found = best_apart(candidates(inner.edges, self._speed, rules, task.direction), TOURED)
+        turn = task.width + math.pi * self.vehicle.radius
+        found = _promising(inner.edges, self._speed, StripRules(task.width, turn), task)
         tours = []
         for each in found:
             swaths = self._inside(_lengthened(each.swaths, self.task.overshoot))

@@ -24,6 +24,8 @@ FINEST = 8  # candidates within one width
 ALIKE = 1e-7  # of the width: boundaries nearer than that are one
 THIN = 1e-7  # of the width: what is lower is nothing
 HALVINGS = 6
+STEEP = 1e-6  # of a strip's height, along it: steeper edges are steps, whose slopes would leave nothing of those of others
+FLAT = 1e-9  # slope, and part of a strip's height, that are left by rounding
 SHORTEST = 1e-6  # m, of a piece
 FEW = 48  # rows that are sorted in place
 
@@ -163,8 +165,10 @@ def pieces_within(edges: Floats, strip: tuple[float, float], numbers: Floats, ev
         x = at
         height += events[k, 1]
         slope += events[k, 2]
-        if abs(slope) < 1e-12:
+        if abs(slope) < FLAT:
             slope = 0.0
+        if abs(height) < FLAT * (strip[1] - strip[0]):
+            height = 0.0
     pieces = _joined(out, pieces, gap)
     pieces = _worth_while(out, pieces, each, least)
     for k in range(pieces):
@@ -213,7 +217,7 @@ def _height_events(edges: Floats, low: float, high: float, events: Floats) -> in
         ya, yb = min(max(y0, low), high), min(max(y1, low), high)
         xa = x0 if rise == 0.0 else x0 + (ya - y0) * (x1 - x0) / rise
         xb = x1 if rise == 0.0 else x0 + (yb - y0) * (x1 - x0) / rise
-        if xa == xb:
+        if abs(xb - xa) <= STEEP * (high - low):
             continue
         sign = -1.0 if xb > xa else 1.0
         slope = sign * (yb - ya) / (xb - xa)
