@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.planning.fields import RANDOM, drawn_fields, random_field
 from launch.commands.bench import Figures
-from uvf.planning.coverage.field import Field
+from uvf.planning.coverage.field import CoverageField
 from uvf.planning.coverage.ground_speed import GroundSpeed
 from uvf.planning.coverage.plan import HEADLAND, SWATH, TRANSIT, CoveragePlan
 from uvf.planning.coverage.planner import plan_coverage
@@ -39,7 +39,7 @@ COLOURS = {TRANSIT: "0.6", SWATH: "C0", HEADLAND: "C2"}
 Vehicle = SurveyAircraft | GroundVehicle
 
 
-def task_for(field: Field) -> tuple[CoverageTask, Vehicle]:
+def task_for(field: CoverageField) -> tuple[CoverageTask, Vehicle]:
     """Width and vehicle by the size of the field."""
     across = 2 * field.area / float(np.hypot(*(field.edges[:, 2:] - field.edges[:, :2]).T).sum())
     if across >= SMALL:
@@ -73,7 +73,7 @@ def slant(plan: CoveragePlan) -> float:
     return float(np.abs((edges[:, 2:] - edges[:, :2]) @ (c, s)).sum() / 2 / plan.bound)
 
 
-def planned(field: Field, vehicle: Vehicle | None = None, least: Literal["time", "swaths"] = "time") -> tuple[CoveragePlan, float]:
+def planned(field: CoverageField, vehicle: Vehicle | None = None, least: Literal["time", "swaths"] = "time") -> tuple[CoveragePlan, float]:
     """A plan and how long it took [ms], the second time, when everything is compiled."""
     task, own = task_for(field)
     task = replace(task, least=least)
@@ -83,7 +83,7 @@ def planned(field: Field, vehicle: Vehicle | None = None, least: Literal["time",
     return plan, 1e3 * (time.perf_counter() - begun)
 
 
-def _case(name: str, make: Callable[[], Field], _: Path | None) -> Figures:
+def _case(name: str, make: Callable[[], CoverageField], _: Path | None) -> Figures:
     field = make()
     rows = {name: figures(*planned(field)), f"{name}, least swaths": figures(*planned(field, least="swaths"))}
     if isinstance(task_for(field)[1], SurveyAircraft):
@@ -99,7 +99,7 @@ def CASES(data: Path | None) -> dict[str, Callable[[Path | None], Figures]]:
     return cases | {f"random:{seed}": partial(_case, f"random {seed}", partial(random_field, seed)) for seed in range(RANDOM)}
 
 
-def _same(field: Field) -> Field:
+def _same(field: CoverageField) -> CoverageField:
     return field
 
 

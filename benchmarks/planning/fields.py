@@ -7,19 +7,19 @@ import numpy as np
 
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.importing.areas import DrawnArea, read_areas
-from uvf.planning.coverage.field import Field, make_field
+from uvf.planning.coverage.field import CoverageField, make_field
 
 RANDOM = 20
 
 
-def field_of(area: DrawnArea) -> Field:
+def field_of(area: DrawnArea) -> CoverageField:
     """The field of an area as drawn, about its own middle."""
     longitude, latitude = area.middle if area.in_degrees else (0.0, 0.0)
     outline, holes = area.rings_about(LocalTangent.from_degrees(latitude, longitude, 0.0))
     return make_field(outline, holes)
 
 
-def drawn_fields(data: Path) -> Iterator[tuple[str, Field]]:
+def drawn_fields(data: Path) -> Iterator[tuple[str, CoverageField]]:
     """Every polygon in the files of ``data``/coverage, by name; files with lines alone have none."""
     for path in sorted((data / "coverage").iterdir()):
         if path.suffix in (".json", ".geojson", ".xml") and "olygon" in path.read_text(encoding="utf-8"):
@@ -27,7 +27,7 @@ def drawn_fields(data: Path) -> Iterator[tuple[str, Field]]:
                 yield area.name, field_of(area)
 
 
-def random_field(seed: int) -> Field:
+def random_field(seed: int) -> CoverageField:
     """A concave outline about 400 m across, of 8 to 20 corners at random distances from the middle, with up to three holes."""
     rng = np.random.default_rng(seed)
     count = int(rng.integers(8, 21))

@@ -18,7 +18,7 @@ from uvf.models.world.file import WorldFile, load_world
 from uvf.models.world.terrain import relief
 from uvf.models.yaml_data import BadInput, convert
 from uvf.planning.coverage.camera import SurveyCamera
-from uvf.planning.coverage.field import Field, join_fields, make_field
+from uvf.planning.coverage.field import CoverageField, join_fields, make_field
 from uvf.planning.coverage.ground_speed import GroundSpeed
 from uvf.planning.coverage.mission import SurveyFlight, survey_mission
 from uvf.planning.coverage.plan import CoveragePlan
@@ -132,7 +132,7 @@ def _planned(wishes: SurveyWishes, file: VehicleFile, params: AirParams, world: 
     return Survey(wishes, plan, flight, survey_mission(plan, flight), airspeed)
 
 
-def _field(wishes: SurveyWishes, world: WorldFile) -> Field:
+def _field(wishes: SurveyWishes, world: WorldFile) -> CoverageField:
     """All areas of the file as one field in the world's frame."""
     areas = read_areas(wishes.area)
     origin = LocalTangent.from_degrees(world.origin.latitude, world.origin.longitude, world.origin.altitude)
@@ -167,7 +167,7 @@ def _of(camera: SurveyCamera | None) -> SurveyCamera:
     return camera
 
 
-def _ground(field: Field, world: WorldFile) -> float:
+def _ground(field: CoverageField, world: WorldFile) -> float:
     """The highest ground [m, world frame] below the field, looked at on a grid of its bounding box."""
     terrain = relief(world)
     if terrain is None:

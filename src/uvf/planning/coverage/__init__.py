@@ -6,7 +6,7 @@ from uvf.lazy import lazily
 
 if TYPE_CHECKING:
     from uvf.planning.coverage.camera import SurveyCamera as SurveyCamera
-    from uvf.planning.coverage.field import Field as Field
+    from uvf.planning.coverage.field import CoverageField as CoverageField
     from uvf.planning.coverage.field import make_field as make_field
     from uvf.planning.coverage.ground_speed import GroundSpeed as GroundSpeed
     from uvf.planning.coverage.plan import CoveragePlan as CoveragePlan
@@ -20,7 +20,7 @@ OFFERED = {
     "plan_coverage": "uvf.planning.coverage.planner:plan_coverage",
     "CoverageTask": "uvf.planning.coverage.task:CoverageTask",
     "CoveragePlan": "uvf.planning.coverage.plan:CoveragePlan",
-    "Field": "uvf.planning.coverage.field:Field",
+    "CoverageField": "uvf.planning.coverage.field:CoverageField",
     "make_field": "uvf.planning.coverage.field:make_field",
     "SurveyAircraft": "uvf.planning.coverage.vehicles:SurveyAircraft",
     "GroundVehicle": "uvf.planning.coverage.vehicles:GroundVehicle",

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.planning.coverage.field import Field
+from uvf.planning.coverage.field import CoverageField
 from uvf.planning.coverage.inside import InsideWays, ways_inside
 from uvf.planning.coverage.task import End
 from uvf.planning.coverage.transits import segments_of, times_between
@@ -133,7 +133,7 @@ class GroundConnections:
     A vehicle with a turn radius takes the Dubins path where it sees the next swath, and bends of that radius on the way elsewhere.
     """
 
-    def __init__(self, swaths: Floats, vehicle: GroundVehicle, field: Field, ends: tuple[End | None, End | None]) -> None:
+    def __init__(self, swaths: Floats, vehicle: GroundVehicle, field: CoverageField, ends: tuple[End | None, End | None]) -> None:
         """ends: where the path begins and ends, if anywhere; they must lie in the field. Raises ValueError for parts that no way joins."""
         self._vehicle = vehicle
         self._entering, self._leaving = both_ways(swaths)

@@ -22,7 +22,7 @@ MOST_CORNERS = 20_000
 
 
 @dataclass(frozen=True)
-class Field:
+class CoverageField:
     """Polygons that do not overlap, with holes [m, east and north]. ``notes``: what had to be repaired, one sentence each."""
 
     shape: MultiPolygon
@@ -56,13 +56,13 @@ class Field:
         """All edges (m, 4) [m]: x, y of the beginning and of the end; the inside lies to the left of each."""
         return np.concatenate([np.hstack((ring, np.roll(ring, -1, axis=0))) for ring in self.rings])
 
-    def shrunk(self, by: float) -> "Field | None":
+    def shrunk(self, by: float) -> "CoverageField | None":
         """What lies at least ``by`` [m] inside every border; corners stay corners. None where nothing is left."""
         inner = _polygons(self.shape.buffer(-by, join_style="mitre", mitre_limit=MITRE))
-        return Field(inner) if inner.area > LEAST_AREA else None
+        return CoverageField(inner) if inner.area > LEAST_AREA else None
 
 
-def make_field(outline: Floats, holes: Sequence[Floats] = ()) -> Field:
+def make_field(outline: Floats, holes: Sequence[Floats] = ()) -> CoverageField:
     """The field within ``outline`` (n, 2) and outside of ``holes`` [m, east and north].
 
     Repeated corners are dropped. A ring that crosses itself stands for the areas that it encloses an odd number of times; holes may
@@ -85,14 +85,16 @@ def make_field(outline: Floats, holes: Sequence[Floats] = ()) -> Field:
         notes.append(f"{len(shape.geoms) - len(kept)} parts without extent are left out")
     if not kept:
         raise ValueError("the holes leave nothing of the field; remove a hole or enlarge the outline")
-    return Field(MultiPolygon(kept), tuple(notes))
+    return CoverageField(MultiPolygon(kept), tuple(notes))
 
 
-def join_fields(fields: Sequence[Field]) -> Field:
+def join_fields(fields: Sequence[CoverageField]) -> CoverageField:
     """One field of several, which may overlap. Raises ValueError for none."""
     if not fields:
         raise ValueError("no field is given; give at least one")
-    return Field(_polygons(shapely.union_all([field.shape for field in fields])), tuple(note for field in fields for note in field.notes))
+    return CoverageField(
+        _polygons(shapely.union_all([field.shape for field in fields])), tuple(note for field in fields for note in field.notes)
+    )
 
 
 def _solid(ring: Floats, what: str, notes: list[str]) -> MultiPolygon:

@@ -7,7 +7,7 @@ import shapely
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import shortest_path
 
-from uvf.planning.coverage.field import Field
+from uvf.planning.coverage.field import CoverageField
 
 Floats = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ class InsideWays:
         return self.places[order[::-1]]
 
 
-def ways_inside(field: Field, places: Floats) -> InsideWays:
+def ways_inside(field: CoverageField, places: Floats) -> InsideWays:
     """Shortest ways inside ``field`` among ``places`` (p, 2) [m], which lie in it. Raises ValueError for more than 3 000 places."""
     every = np.concatenate((places, _bends(field)))
     if len(every) > MOST_PLACES:
@@ -49,7 +49,7 @@ def ways_inside(field: Field, places: Floats) -> InsideWays:
     return InsideWays(every, found, before)
 
 
-def _bends(field: Field) -> Floats:
+def _bends(field: CoverageField) -> Floats:
     """Corners (k, 2) [m] round which a shortest way may bend: those where the field's angle is more than half a turn."""
     bends = []
     for ring in field.rings:
@@ -58,7 +58,7 @@ def _bends(field: Field) -> Floats:
     return np.concatenate(bends)
 
 
-def border_passes(field: Field, width: float, passes: int, start: Floats) -> list[Floats]:
+def border_passes(field: CoverageField, width: float, passes: int, start: Floats) -> list[Floats]:
     """Closed ways (k, 2) [m], first corner repeated, ``passes`` times along every border, the outer one half a ``width`` [m] inside.
 
     In order: each begins where it is nearest to the end of the one before, the first one nearest to ``start`` (2,) [m].

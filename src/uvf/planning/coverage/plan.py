@@ -9,7 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from uvf.planning.coverage.cells import Cell
-from uvf.planning.coverage.field import Field
+from uvf.planning.coverage.field import CoverageField
 from uvf.planning.coverage.transits import moved
 
 Floats = NDArray[np.float64]
@@ -29,7 +29,7 @@ class CoveragePlan:
     modulo half a turn. time: [s]. cells: of the decomposition along the direction.
     """
 
-    field: Field
+    field: CoverageField
     width: float
     direction: float
     swaths: Floats
@@ -109,6 +109,6 @@ class CoveragePlan:
         return float(way.difference(self.field.shape.buffer(1e-3)).length)
 
 
-def covered_share(field: Field, swept: shapely.Geometry) -> float:
+def covered_share(field: CoverageField, swept: shapely.Geometry) -> float:
     """Share [0..1] of the field's area within ``swept``."""
     return float(field.shape.intersection(swept).area / field.area)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from uvf.planning.coverage.cells import decompose, visiting_order
 from uvf.planning.coverage.connections import AirConnections, Connections, GroundConnections, straights
 from uvf.planning.coverage.directions import Candidate, best_apart, candidates
-from uvf.planning.coverage.field import Field
+from uvf.planning.coverage.field import CoverageField
 from uvf.planning.coverage.ground_speed import GroundSpeed
 from uvf.planning.coverage.inside import border_passes
 from uvf.planning.coverage.ordering import best_tour, rule_orders, tour_cost
@@ -218,7 +218,7 @@ class _Driven:
     def _join(self, path: _Path, start: End, end: End) -> None:
         path.add(GroundConnections(np.empty((0, 4)), self.vehicle, self.task.field, (start, end)).way(start, end), TRANSIT)
 
-    def _best_tour(self, inner: Field, start: End | None) -> _Tour:
+    def _best_tour(self, inner: CoverageField, start: End | None) -> _Tour:
         task = replace(self.task, field=inner, start=start)
         turn = task.width + math.pi * self.vehicle.radius
         found = _promising(inner.edges, self._speed, StripRules(task.width, turn), task)

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from uvf.planning.coverage.field import Field
+from uvf.planning.coverage.field import CoverageField
 
 LEAST_WIDTH, MOST_WIDTH = 1e-3, 1e6  # m
 
@@ -33,7 +33,7 @@ class CoverageTask:
     of the swaths, whatever their turns take. seed: of the search for the order.
     """
 
-    field: Field
+    field: CoverageField
     width: float
     share: float = 0.996
     overshoot: float = 0.0
