@@ -87,12 +87,8 @@ class CoveragePlan:
     def _swept(self) -> shapely.Geometry:
         lines = shapely.linestrings(self.swaths.reshape(-1, 2, 2))
         swept = [shapely.buffer(lines, self.width / 2, cap_style="flat")]
-        straight = self.segments[self.kinds == HEADLAND]
-        if len(straight):
-            ends = [moved(row[:3], row[3], row[4])[:2] for row in straight]
-            headlands = shapely.linestrings(np.stack((straight[:, :2], np.array(ends)), axis=1))
-            swept.append(shapely.buffer(headlands, self.width / 2, cap_style="round"))
-        return shapely.union_all(np.concatenate(swept))
+        along = swept_along(self.segments[self.kinds == HEADLAND], self.width)
+        return shapely.union_all([*swept[0], along])
 
     def path(self, step: float = 1.0) -> Floats:
         """Poses (k, 3) x, y [m], course [rad] along the whole path, at most ``step`` [m] apart within each segment, with all their ends."""
@@ -107,6 +103,13 @@ class CoveragePlan:
         """Length [m] of the path that runs outside of the field or over its holes."""
         way = shapely.LineString(self.path()[:, :2]) if len(self.segments) else shapely.LineString()
         return float(way.difference(self.field.shape.buffer(1e-3)).length)
+
+
+def swept_along(straights: Floats, width: float) -> shapely.Geometry:
+    """What a tool ``width`` [m] wide sweeps along straight segments (k, 5), and when it turns on the spot at their ends."""
+    ends = np.array([moved(row[:3], row[3], row[4])[:2] for row in straights]).reshape(-1, 2)
+    lines = shapely.linestrings(np.stack((straights[:, :2], ends), axis=1))
+    return shapely.union_all(shapely.buffer(lines, width / 2, cap_style="round"))
 
 
 def covered_share(field: CoverageField, swept: shapely.Geometry) -> float:

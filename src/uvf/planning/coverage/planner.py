@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from uvf.planning.coverage.cells import decompose, visiting_order
@@ -19,8 +18,9 @@ from uvf.planning.coverage.directions import Candidate, best_apart, candidates
 from uvf.planning.coverage.field import CoverageField
 from uvf.planning.coverage.ground_speed import GroundSpeed
 from uvf.planning.coverage.inside import border_passes
+from uvf.planning.coverage.leftovers import cut_off, leftover_swaths
 from uvf.planning.coverage.ordering import best_tour, rule_orders, tour_cost
-from uvf.planning.coverage.plan import HEADLAND, SWATH, TRANSIT, CoveragePlan
+from uvf.planning.coverage.plan import HEADLAND, SWATH, TRANSIT, CoveragePlan, swept_along
 from uvf.planning.coverage.strips import StripRules, rotated
 from uvf.planning.coverage.task import CoverageTask, End
 from uvf.planning.coverage.vehicles import GroundVehicle, SurveyAircraft
@@ -207,31 +207,34 @@ class _Driven:
                 self._join(path, start, End(*ring[0].tolist()))
             path.add(straights(ring), HEADLAND)
             start = End(*ring[-1].tolist())
-        if inner is None:
+        tour = self._best_tour(inner, start, self._leftovers(path, inner))
+        if tour is None:
             if start is not None and self.task.end is not None:
                 self._join(path, start, self.task.end)
             return path.plan(self.task, np.empty((0, 4)), 0.0, self._speed)
-        tour = self._best_tour(inner, start)
         swaths = path.add_tour(tour, (start, self.task.end))
         return path.plan(self.task, swaths, tour.direction, self._speed)
+
+    def _leftovers(self, path: _Path, inner: CoverageField | None) -> Floats:
+        """Swaths (n, 4) [m] along what neither the passes along the borders nor swaths ``inner`` of them reach."""
+        swept = swept_along(np.concatenate(path.segments), self.task.width)
+        if inner is not None:
+            swept = swept.union(inner.shape.buffer(1e-6))
+        return leftover_swaths(self.task.field, swept, self.task.width, (1.0 - self.task.share) / 2 * self.task.field.area)
 
     def _join(self, path: _Path, start: End, end: End) -> None:
         path.add(GroundConnections(np.empty((0, 4)), self.vehicle, self.task.field, (start, end)).way(start, end), TRANSIT)
 
-    def _best_tour(self, inner: CoverageField, start: End | None) -> _Tour:
-        task = replace(self.task, field=inner, start=start)
-        turn = task.width + math.pi * self.vehicle.radius
-        found = _promising(inner.edges, self._speed, StripRules(task.width, turn), task)
+    def _best_tour(self, inner: CoverageField | None, start: End | None, leftovers: Floats) -> _Tour | None:
+        """The best tour of swaths within ``inner`` and of ``leftovers`` (n, 4) [m]; None where there are none."""
+        area = inner or self.task.field
+        task = replace(self.task, field=area, start=start)
+        rules = StripRules(task.width, task.width + math.pi * self.vehicle.radius)
+        found = [Candidate(0.0, np.empty((0, 4)), 0.0)] if inner is None else _promising(area.edges, self._speed, rules, task)
         tours = []
         for each in found:
-            swaths = self._inside(_lengthened(each.swaths, self.task.overshoot))
-            connections = GroundConnections(swaths, self.vehicle, self.task.field, (start, task.end))
-            tours.append(_toured(Candidate(each.direction, swaths, each.time), connections, task, inner.edges))
-        return _best(tours, task)
-
-    def _inside(self, swaths: Floats) -> Floats:
-        """The swaths cut off at the border of the field."""
-        room = self.task.field.shape.buffer(1e-6)
-        lines = shapely.get_parts(shapely.intersection(shapely.linestrings(swaths.reshape(-1, 2, 2)), room))
-        found: Floats = shapely.get_coordinates([line for line in lines if line.length > 1e-3]).reshape(-1, 4)
-        return found
+            swaths = np.concatenate((cut_off(_lengthened(each.swaths, self.task.overshoot), self.task.field), leftovers))
+            if len(swaths):
+                connections = GroundConnections(swaths, self.vehicle, self.task.field, (start, task.end))
+                tours.append(_toured(Candidate(each.direction, swaths, each.time), connections, task, area.edges))
+        return _best(tours, task) if tours else None
