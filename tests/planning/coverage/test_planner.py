@@ -189,3 +189,21 @@ def test_the_same_seed_plans_the_same():
     field = comb(np.random.default_rng(11))
     one, other = (plan_coverage(CoverageTask(field, 15.0, seed=4), AIRCRAFT) for _ in range(2))
     assert (one.segments == other.segments).all()
+
+
+def test_a_ring_as_wide_as_two_passes_needs_no_swath():
+    ring = make_field(
+        np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]), [np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0], [1.0, 9.0]])]
+    )
+    plan = plan_coverage(CoverageTask(ring, 0.5), GroundVehicle(1.0))
+    assert len(plan.swaths) == 0
+    assert plan.covered >= 0.995
+    assert plan.length_ratio < 1.05
+
+
+def test_a_spike_narrower_than_the_tool_is_driven_along_inside():
+    spiked = make_field(np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], [1.0, 20.0], [0.0, 90.0]]))
+    plan = plan_coverage(CoverageTask(spiked, 2.0), GroundVehicle(1.0))
+    assert plan.covered >= 0.995
+    assert plan.outside < 1e-3
+    assert plan.swaths[:, 1::2].max() > 70.0

@@ -30,6 +30,7 @@ Ints = NDArray[np.int64]
 
 GAP = 0.25  # of the width: an aircraft flies on over shorter gaps without a break
 TOURED, TOURED_SHORTEST, REFINED = 8, 6, 3  # directions
+SLOWER, MORE = 1.25, 1.5  # times the best by rule of thumb: what takes longer, or has more swaths, gets no tour
 MOST_SWATHS = 1_200  # of a tour
 
 
@@ -57,7 +58,10 @@ def _promising(edges: Floats, speed: GroundSpeed, rules: StripRules, task: Cover
     shortest = candidates(edges, speed, replace(rules, each=0.0), task.direction)
     if task.least == "swaths":
         return shortest[:1]
-    return best_apart(candidates(edges, speed, rules, task.direction), TOURED) + best_apart(shortest, TOURED_SHORTEST)
+    quickest = best_apart(candidates(edges, speed, rules, task.direction), TOURED)
+    few = MORE * len(quickest[0].swaths)
+    likely = [each for each in quickest if each.time <= SLOWER * quickest[0].time]
+    return likely + [each for each in best_apart(shortest, TOURED_SHORTEST) if len(each.swaths) <= few]
 
 
 def _toured(candidate: Candidate, connections: Connections, task: CoverageTask, edges: Floats) -> _Tour:
@@ -217,10 +221,10 @@ class _Driven:
 
     def _leftovers(self, path: _Path, inner: CoverageField | None) -> Floats:
         """Swaths (n, 4) [m] along what neither the passes along the borders nor swaths ``inner`` of them reach."""
-        swept = swept_along(np.concatenate(path.segments), self.task.width)
+        swept, border = swept_along(np.concatenate(path.segments), self.task.width), self.task.field.area
         if inner is not None:
-            swept = swept.union(inner.shape.buffer(1e-6))
-        return leftover_swaths(self.task.field, swept, self.task.width, (1.0 - self.task.share) / 2 * self.task.field.area)
+            swept, border = swept.union(inner.shape.buffer(1e-6)), border - inner.area
+        return leftover_swaths(self.task.field, swept, self.task.width, (1.0 - self.task.share) * border)
 
     def _join(self, path: _Path, start: End, end: End) -> None:
         path.add(GroundConnections(np.empty((0, 4)), self.vehicle, self.task.field, (start, end)).way(start, end), TRANSIT)
