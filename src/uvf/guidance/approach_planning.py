@@ -109,9 +109,8 @@ def _approach(runway: Runway, site: ApproachSite, params: AirParams) -> PlannedA
     for length in np.linspace(SHORTEST, LONGEST, LENGTHS) * params.min_airspeed:
         slope = max(math.tan(params.glide_slope), _steepness(runway, site, 1.0, float(length)))
         if slope > steepest:
-            whys.append(
-                f"a glide of {math.degrees(math.atan(slope)):.1f} deg over what stands before it, {math.degrees(math.atan(steepest)):.1f} at most"
-            )
+            angle, most = (math.degrees(math.atan(v)) for v in (slope, steepest))
+            whys.append(f"a glide of {angle:.1f} deg over what stands before it, {most:.1f} at most")
             break
         height = runway.aim.height + slope * float(length)
         for radius in _radii(site, params):

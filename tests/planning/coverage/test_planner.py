@@ -192,9 +192,8 @@ def test_the_same_seed_plans_the_same():
 
 
 def test_a_ring_as_wide_as_two_passes_needs_no_swath():
-    ring = make_field(
-        np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]), [np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0], [1.0, 9.0]])]
-    )
+    inner = np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0], [1.0, 9.0]])
+    ring = make_field(np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]), [inner])
     plan = plan_coverage(CoverageTask(ring, 0.5), GroundVehicle(1.0))
     assert len(plan.swaths) == 0
     assert plan.covered >= 0.995
