@@ -13,6 +13,7 @@ import typer
 from launch import settings
 from launch.commands.log import KeyArgument, LogArgument, log_app
 from launch.commands.map import map_app
+from launch.commands.plan import plan_app
 from launch.commands.sim import sim_app
 from launch.commands.slam import slam
 from launch.commands.vehicle import vehicle_app
@@ -27,6 +28,7 @@ app.add_typer(topic_app, name="topic")
 app.add_typer(node_app, name="node")
 app.add_typer(log_app, name="log")
 app.add_typer(map_app, name="map")
+app.add_typer(plan_app, name="plan")
 app.add_typer(sim_app, name="sim")
 app.add_typer(vehicle_app, name="vehicle")
 app.add_typer(world_app, name="world")
