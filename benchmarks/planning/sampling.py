@@ -101,7 +101,7 @@ def ompl(ground: Ground, query: tuple[Triple, Triple], seed: int) -> Way | None:
 
     def is_valid(state: object) -> bool:
         x, y = state.getX(), state.getY()  # type: ignore[attr-defined]
-        return 0.0 <= x < columns and 0.0 <= y < rows and free[int(y)][int(x)]
+        return bool(0.0 <= x < columns and 0.0 <= y < rows and free[int(y)][int(x)])
 
     setup.setStateValidityChecker(is_valid)
     ends = []

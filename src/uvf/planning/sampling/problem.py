@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from uvf.maths.curves.segments import Triple, checked_configuration
+from uvf.planning.costmap.inflation import LETHAL, MAX_NON_OBSTACLE, cost_factors
 from uvf.planning.sampling.clearance import Body, ClearanceField, checked_field, is_clear
 from uvf.planning.sampling.path import Path
 from uvf.planning.sampling.spaces import PLANE, StateSpace
-from uvf.planning.search import astar
+from uvf.planning.search.grid_search import GridSearch
 
 Floats = NDArray[np.float64]
 
@@ -130,12 +131,12 @@ def _guide(field: ClearanceField, body: Body, space: StateSpace, ends: tuple[Tri
     """
     clearance = field.values.astype(np.float64) - body.radii.min()
     wanted = max(space.radius, 2.0 * field.resolution)
-    cost = 1.0 + NARROW * np.clip(1.0 - clearance / wanted, 0.0, 1.0)
-    cost[clearance < 0.0] = -1.0
+    values = (MAX_NON_OBSTACLE * np.clip(1.0 - clearance / wanted, 0.0, 1.0)).astype(np.uint8)
+    values[clearance < 0.0] = LETHAL
     start, goal = ((int((y - field.y) / field.resolution), int((x - field.x) / field.resolution)) for x, y, _ in ends)
-    found = astar(cost, start, goal) if cost[start] > 0.0 and cost[goal] > 0.0 else None
-    if found is None or len(found[0]) < 2 * SMOOTH:
+    found = GridSearch(values, cost_factors(NARROW)).astar(start, goal)
+    if found is None or len(found.cells) < 2 * SMOOTH:
         return np.empty((0, 3))
-    points = (found[0][:, ::-1] + 0.5) * field.resolution + (field.x, field.y)
+    points = (found.cells[:, ::-1] + 0.5) * field.resolution + (field.x, field.y)
     along = points[SMOOTH:] - points[:-SMOOTH]
     return np.column_stack((points[SMOOTH // 2 : SMOOTH // 2 - SMOOTH], np.arctan2(along[:, 1], along[:, 0])))
