@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uvf.maths.curves import dubins_path
+from uvf.maths.curves.dubins import dubins_path
 from uvf.planning.coverage.ground_speed import GroundSpeed
 from uvf.planning.coverage.transits import Motion, moved, quickest, segments_of
 
