@@ -127,6 +127,17 @@ class LocalController:
         stopped = self._last == STOP and wanted != STOP
         return DriveResult(*self._last, Drive.STOPPED if stopped else Drive.DRIVING)
 
+    def halt(self) -> tuple[float, float]:
+        """Zero velocity, as fast as the wheels can."""
+        self._last = STOP
+        return STOP
+
+    def move(self, pose: Pose2, velocity: tuple[float, float], wanted: tuple[float, float]) -> tuple[float, float]:
+        """A wanted velocity (m/s, rad/s) within the limits of acceleration, before which the stop has the last word."""
+        reached = within(self.limits, self._ahead(pose, velocity), wanted, self.settings.period)
+        self._last = self.made_safe(reached, velocity)
+        return self._last
+
     def made_safe(self, wanted: tuple[float, float], velocity: tuple[float, float]) -> tuple[float, float]:
         """The wanted velocity, slowed so that the vehicle can stop before everything that the last scan shows.
 

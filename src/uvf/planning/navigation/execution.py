@@ -1,0 +1,65 @@
+"""The local controller under the navigator's directives: follows, turns, backs up, stops, and says how it fares."""
+
+from math import hypot
+
+from uvf.maths.rotations import wrap
+from uvf.maths.se2 import Pose2
+from uvf.planning.local.controller import Drive, LocalController
+from uvf.planning.local.planner import STOP
+from uvf.planning.navigation.directive import Action, Directive, Report
+
+SPIN_RATE = 1.2  # rad/s
+BACK_UP_SPEED = 0.15  # m/s
+BLOCKED_FOR = 1.0  # s of standing after which a recovery counts as impossible
+
+
+class Executor:
+    """Carries out one directive at a time."""
+
+    def __init__(self, controller: LocalController) -> None:
+        self.controller = controller
+        self.report = Report(-1)
+        self._begun: Pose2 = Pose2(0.0, 0.0, 0.0)
+        self._turned, self._yaw = 0.0, 0.0
+        self._stood_since: float | None = None
+
+    def step(self, t: float, pose: Pose2, velocity: tuple[float, float], directive: Directive) -> tuple[float, float]:
+        """Velocity (m/s, rad/s) at ``t`` [s]; the stop before obstacles has the last word in all that is done."""
+        if directive.number != self.report.number:
+            self._begin(pose, directive)
+        if directive.action == Action.FOLLOW:
+            result = self.controller.drive(pose, velocity, directive.path)
+            self.report = Report(directive.number, result.how)
+            return result.speed, result.turn_rate
+        if directive.action == Action.STOP:
+            self.report = Report(directive.number, Drive.NO_PATH, done=True)
+            return self.controller.halt()
+        return self._move(t, pose, velocity, directive)
+
+    def _begin(self, pose: Pose2, directive: Directive) -> None:
+        self.report = Report(directive.number)
+        self._begun, self._turned, self._yaw, self._stood_since = pose, 0.0, pose[2], None
+        self.controller.planner.reset()
+        if directive.clear_beyond is not None:
+            self.controller.layer.clear(directive.clear_beyond, (pose[0], pose[1]))
+
+    def _move(self, t: float, pose: Pose2, velocity: tuple[float, float], directive: Directive) -> tuple[float, float]:
+        self._turned += wrap(pose[2] - self._yaw)
+        self._yaw = pose[2]
+        if directive.action == Action.SPIN:
+            done = abs(self._turned) >= abs(directive.amount)
+            wanted = (0.0, SPIN_RATE if directive.amount > 0 else -SPIN_RATE)
+        else:
+            done = hypot(pose[0] - self._begun[0], pose[1] - self._begun[1]) >= directive.amount
+            wanted = (-BACK_UP_SPEED, 0.0)
+        if done:
+            self.report = Report(directive.number, done=True)
+            return self.controller.halt()
+        found = self.controller.move(pose, velocity, wanted)
+        if found != STOP:
+            self._stood_since = None
+        elif self._stood_since is None:
+            self._stood_since = t
+        impossible = self._stood_since is not None and t - self._stood_since >= BLOCKED_FOR
+        self.report = Report(directive.number, Drive.STOPPED if found == STOP else Drive.DRIVING, impossible=impossible)
+        return found

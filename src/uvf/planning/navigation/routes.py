@@ -1,0 +1,65 @@
+"""Routes over what the sensors have seen, for a vehicle without a map: unknown ground is taken for free."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.se2 import Pose2
+from uvf.planning.costmap.costmap import Cell, Costmap
+from uvf.planning.costmap.inflation import INSCRIBED, NO_INFORMATION
+from uvf.planning.local.controller import LocalController
+from uvf.planning.navigation.failures import Failure
+from uvf.planning.navigation.navigator import Goal, Route
+from uvf.planning.search.grid_search import GridSearch
+from uvf.planning.smoothing import resample
+
+Floats = NDArray[np.float64]
+
+INSET = 0.3  # m from the window's border to where a goal beyond it is sought
+UNDERFOOT = 0.4  # m of a path's beginning that does not count when it is looked at again: the vehicle stands there
+
+
+class LayerRoutes:
+    """Plans by A* over the obstacle layer of a controller."""
+
+    def __init__(self, controller: LocalController) -> None:
+        self._controller = controller
+
+    def plan(self, pose: Pose2, goal: Goal) -> Route:
+        """The best path to the goal, or to the place in its direction where the window ends."""
+        costs = self._controller.leaving(self._controller.costmap(), pose)
+        cell = costs.cell(goal.x, goal.y)
+        if costs.holds(cell) and INSCRIBED <= costs.values[cell] < NO_INFORMATION:
+            return Route(None, Failure.GOAL_OCCUPIED)
+        at = cell if costs.holds(cell) else _towards(costs, pose, goal)
+        found = GridSearch(costs.values, self._controller.factors).astar(costs.cell(pose[0], pose[1]), at)
+        if found is None:
+            return Route(None, Failure.NO_VALID_PATH)
+        points = costs.points(found.cells)
+        points[0] = pose[:2]
+        if costs.holds(cell):
+            points[-1] = goal.x, goal.y
+        return Route(resample(points))
+
+    def is_free(self, path: Floats) -> bool:
+        """Whether the vehicle's centre may still be everywhere on the path."""
+        costs = self._controller.costmap()
+        ahead = path[np.hypot(*(path - path[0]).T) > UNDERFOOT] if len(path) else path
+        cells = np.floor((ahead[:, ::-1] - np.array(costs.origin)[::-1]) / costs.resolution).astype(np.int64)
+        inside = ((cells >= 0) & (cells < costs.values.shape)).all(axis=1)
+        values = costs.values[cells[inside, 0], cells[inside, 1]]
+        return not ((values >= INSCRIBED) & (values < NO_INFORMATION)).any()
+
+
+def _towards(costs: Costmap, pose: Pose2, goal: Goal) -> Cell:
+    """The cell in the goal's direction where the window ends; if it is not free, the nearest one to it that is."""
+    rows, columns = costs.values.shape
+    half = np.array((columns, rows)) * costs.resolution / 2 - INSET
+    ahead = np.array((goal.x - pose[0], goal.y - pose[1]))
+    ahead = ahead * float((half / np.maximum(np.abs(ahead), 1e-9)).min())
+    row, column = costs.cell(pose[0] + ahead[0], pose[1] + ahead[1])
+    row, column = min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)
+    open_cells = np.argwhere((costs.values < INSCRIBED) | (costs.values == NO_INFORMATION))
+    if not len(open_cells):
+        return row, column
+    nearest = open_cells[np.argmin(np.hypot(open_cells[:, 0] - row, open_cells[:, 1] - column))]
+    return int(nearest[0]), int(nearest[1])
