@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uvf.guidance.clothoid_dubins import smooth_dubins_path, turned_onto, turned_onto_circle
-from uvf.maths.curves import dubins_path
+from uvf.maths.curves.dubins import dubins_path
 
 RADIUS, RAMP = 60.0, 30.0
 START = (10.0, -20.0, 0.3)

@@ -17,7 +17,7 @@ from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.local.controller import ControllerSettings, LocalController
 from uvf.planning.local.dwa import Dwa, DwaSettings
 from uvf.planning.local.mppi import Mppi, MppiSettings
-from uvf.planning.local.planner import Limits, LocalPlanner
+from uvf.planning.local.planner import Limits
 from uvf.planning.search.grid_search import GridSearch
 from uvf.planning.smoothing import resample
 
@@ -27,10 +27,9 @@ SIZE = 24.0  # m, of the window that paths are planned over
 REPLAN = 0.2  # s
 INSET = 0.3  # m from the window's border to where a goal beyond it is sought
 MPPI_LIMITS = Limits(min_speed=-0.5, max_speed=1.4, max_turn_rate=2.0, acceleration=2.5, angular_acceleration=6.0, lateral_acceleration=2.0)
-DWA_LIMITS = Limits(
-    min_speed=0.1, max_speed=0.5, max_turn_rate=1.57, acceleration=10.0, angular_acceleration=20.0, lateral_acceleration=10.0
-)
-"""move_base's on the Jackal."""
+DWA_LIMITS = Limits(0.1, 0.5, 1.57, 10.0, 20.0, 10.0)
+MOVE_BASE_HALF, MOVE_BASE_PADDING = (0.21, 0.165), 0.1  # m
+"""What move_base has on the Jackal: jackal_helper/configs/params of the challenge."""
 
 
 @dataclass(frozen=True)
@@ -48,15 +47,16 @@ class Beams:
 
     def points(self, ranges: Floats, farthest: float) -> Floats:
         """Ends (n, 2) [m, base frame]; those without return at ``farthest`` [m]."""
-        return self.rays * np.where(ranges > 0.0, ranges, farthest)[:, None] + np.array(self.eye)
+        points: Floats = self.rays * np.where(ranges > 0.0, ranges, farthest)[:, None] + np.array(self.eye)
+        return points
 
 
 class MaplessStack:
     """A controller of the benchmark: A* over the obstacle layer and a local planner."""
 
-    def __init__(self, briefing: Briefing, limits: Limits, planner: LocalPlanner, settings: ControllerSettings) -> None:
-        self._local = LocalController(RobotFootprint.polygon(briefing.robot.footprint), limits, planner, settings)
-        self._beams = Beams.of(briefing.robot.scanner)
+    def __init__(self, scanner: Scanner, controller: LocalController) -> None:
+        self._local = controller
+        self._beams = Beams.of(scanner)
         self._goal: Floats = np.zeros(2)
         self._path: Floats = np.zeros((0, 2))
         self._planned_at = -np.inf
@@ -99,11 +99,14 @@ def mppi_stack(briefing: Briefing) -> MaplessStack:
     """The default stack."""
     footprint = RobotFootprint.polygon(briefing.robot.footprint)
     settings = ControllerSettings(size=SIZE)
-    return MaplessStack(briefing, MPPI_LIMITS, Mppi(MPPI_LIMITS, footprint, MppiSettings(), briefing.seed), settings)
+    planner = Mppi(MPPI_LIMITS, footprint, MppiSettings(), briefing.seed)
+    return MaplessStack(briefing.robot.scanner, LocalController(footprint, MPPI_LIMITS, planner, settings))
 
 
 def dwa_stack(briefing: Briefing) -> MaplessStack:
-    """The dynamic window approach at 0.5 m/s with the parameters of move_base on the Jackal."""
-    footprint = RobotFootprint.polygon(briefing.robot.footprint)
-    settings = ControllerSettings(size=SIZE, inflation=Inflation(0.3, 10.0), margin=0.0, obstacle_range=5.0)
-    return MaplessStack(briefing, DWA_LIMITS, Dwa(DWA_LIMITS, footprint, DwaSettings()), settings)
+    """The dynamic window approach at 0.5 m/s with the challenge's parameters of move_base on the Jackal, but without its recoveries."""
+    x, y = (half + MOVE_BASE_PADDING for half in MOVE_BASE_HALF)
+    footprint = RobotFootprint.polygon(np.array(((-x, -y), (x, -y), (x, y), (-x, y))))
+    settings = ControllerSettings(size=SIZE, inflation=Inflation(0.3, 10.0), margin=0.0, obstacle_range=2.5)
+    planner = Dwa(DWA_LIMITS, footprint, DwaSettings())
+    return MaplessStack(briefing.robot.scanner, LocalController(footprint, DWA_LIMITS, planner, settings))

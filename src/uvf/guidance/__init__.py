@@ -10,12 +10,12 @@ if TYPE_CHECKING:
     from uvf.guidance.vector_field import line_reference as line_reference
     from uvf.guidance.vector_field import orbit_reference as orbit_reference
     from uvf.guidance.vector_field import turn_radius as turn_radius
-    from uvf.maths.curves import DubinsPath as DubinsPath
-    from uvf.maths.curves import dubins_path as dubins_path
+    from uvf.maths.curves.dubins import DubinsPath as DubinsPath
+    from uvf.maths.curves.dubins import dubins_path as dubins_path
 
 OFFERED = {
-    "dubins_path": "uvf.maths.curves:dubins_path",
-    "DubinsPath": "uvf.maths.curves:DubinsPath",
+    "dubins_path": "uvf.maths.curves.dubins:dubins_path",
+    "DubinsPath": "uvf.maths.curves.dubins:DubinsPath",
     "smooth_dubins_path": "uvf.guidance.clothoid_dubins:smooth_dubins_path",
     "line_reference": "uvf.guidance.vector_field:line_reference",
     "orbit_reference": "uvf.guidance.vector_field:orbit_reference",

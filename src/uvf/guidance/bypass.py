@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from uvf.guidance.clothoid_dubins import SampledPath, smooth_dubins_path
 from uvf.guidance.corners import CornerLimits
 from uvf.guidance.vector_field import Point
-from uvf.maths.curves import Triple, dubins_path
+from uvf.maths.curves.dubins import Triple, dubins_path
 
 Floats = NDArray[np.float64]
 

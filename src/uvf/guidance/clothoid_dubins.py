@@ -12,7 +12,7 @@ from math import asin, atan2, cos, hypot, remainder, sin, tau
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.maths.curves import Triple, dubins_paths
+from uvf.maths.curves.dubins import Triple, dubins_paths
 
 Floats = NDArray[np.float64]
 

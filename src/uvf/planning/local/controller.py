@@ -1,6 +1,6 @@
 """Drives along a path among what the sensors see: obstacle layer, moving things, a local planner, and the stop that nothing bypasses."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from math import cos, sin
 
@@ -33,11 +33,11 @@ class ControllerSettings:
     resolution: float = 0.05  # m
     obstacle_lifetime: float = 5.0  # s without being seen again
     obstacle_range: float = 10.0  # m, farther ones are not marked
-    inflation: Inflation = Inflation(0.55, 4.0)
+    inflation: Inflation = field(default_factory=lambda: Inflation(0.55, 4.0))
     cost_travel_multiplier: float = 4.0
     margin: float = 0.02  # m round the footprint, for plans
     stop_margin: float = 0.01  # m round the footprint, for the stop
-    window: WindowSettings = WindowSettings()
+    window: WindowSettings = field(default_factory=WindowSettings)
     period: float = 0.05  # s from one command to the next
     delay: float = 0.05  # s from a measurement to the wheels
     reaction: float = 0.1  # s from sight to braking

@@ -62,7 +62,7 @@ class Dwa:
         costs = (
             s.path_distance_bias * found[:, rollout.OFF_PATH]
             + s.goal_distance_bias * found[:, rollout.TO_GO]
-            + s.occdist_scale * found[:, rollout.WORST] / 252.0
+            + s.occdist_scale * found[:, rollout.WORST]
         )
         best = int(np.argmin(np.where(allowed, costs, np.inf)))
         return float(pairs[best, 0]), float(pairs[best, 1])

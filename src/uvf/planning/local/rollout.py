@@ -43,7 +43,8 @@ def _sample(field: Floats32, x: float, y: float) -> float:
     u, v = x - c, y - r
     below = field[r, c] * (1.0 - u) + field[r, c + 1] * u
     above = field[r + 1, c] * (1.0 - u) + field[r + 1, c + 1] * u
-    return below * (1.0 - v) + above * v
+    sampled: float = below * (1.0 - v) + above * v
+    return sampled
 
 
 @compiled

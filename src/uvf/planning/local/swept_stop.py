@@ -57,7 +57,8 @@ def safe_share(
     """The largest fraction [-] of ``velocity`` ([m/s], [rad/s]) at which the vehicle can still stop ``margin`` [m] before all points.
 
     points: (n, 2) [m], base frame; brake: (reaction [s], deceleration [m/s^2], the same of the turn [rad/s^2]). The outline is swept
-    along the arc, also when it turns on the spot. A vehicle that is already nearer may only move away, without coming nearer on the way. 0 when nothing is safe.
+    along the arc, also when it turns on the spot. A vehicle that is already nearer may only move away, without coming nearer on the
+    way. 0 when nothing is safe.
     """
     linear, angular = velocity
     sides = np.zeros((0, 3)) if footprint.round else footprint.sides()

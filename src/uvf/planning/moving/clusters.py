@@ -32,7 +32,7 @@ def labels_of(points: Floats, ranges: Floats) -> Indices:
     """
     n = ranges.size
     labels = np.full(n, -1, dtype=np.int64)
-    current, last, lowest, highest, peak = -1, -1, 0.0, 0.0, -1
+    current, last, highest, peak = -1, -1, 0.0, -1
     for i in range(n):
         if not ranges[i] > 0.0:
             continue
@@ -43,22 +43,16 @@ def labels_of(points: Floats, ranges: Floats) -> Indices:
             joined = dx * dx + dy * dy <= reach * reach
         if not joined:
             current += 1
-            lowest, highest, peak = ranges[i], ranges[i], i
+            highest, peak = ranges[i], i
         else:
-            lowest = min(lowest, ranges[i])
-            if ranges[i] > highest or peak < 0:
+            if ranges[i] > highest:
                 highest, peak = ranges[i], i
-            if (
-                lowest < highest - DENT
-                and peak > 0
-                and ranges[i] < highest - DENT
-                and _falls_before(ranges, labels, peak, current, highest)
-            ):
+            if ranges[i] < highest - DENT and _falls_before(ranges, labels, peak, current, highest):
                 current += 1  # what came after the dent is another thing
                 for k in range(peak, i):
                     if labels[k] >= 0:
                         labels[k] = current
-                lowest, highest, peak = ranges[i], ranges[i], i
+                highest, peak = ranges[i], i
         labels[i] = current
         last = i
     return labels

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from launch.commands.testing import data_folder
-from uvf.maths.curves import DubinsPath, dubins_path, dubins_paths
+from uvf.maths.curves.dubins import DubinsPath, dubins_path, dubins_paths
 
 angles = st.floats(-math.pi, math.pi)
 places = st.floats(-300.0, 300.0)
