@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from uvf.planning.coverage.cells import Cell
 from uvf.planning.coverage.field import CoverageField
+from uvf.planning.coverage.leftovers import swept_by
 from uvf.planning.coverage.transits import moved
 
 Floats = NDArray[np.float64]
@@ -85,10 +86,7 @@ class CoveragePlan:
 
     @property
     def _swept(self) -> shapely.Geometry:
-        lines = shapely.linestrings(self.swaths.reshape(-1, 2, 2))
-        swept = [shapely.buffer(lines, self.width / 2, cap_style="flat")]
-        along = swept_along(self.segments[self.kinds == HEADLAND], self.width)
-        return shapely.union_all([*swept[0], along])
+        return swept_by(self.swaths, self.width).union(swept_along(self.segments[self.kinds == HEADLAND], self.width))
 
     def path(self, step: float = 1.0) -> Floats:
         """Poses (k, 3) x, y [m], course [rad] along the whole path, at most ``step`` [m] apart within each segment, with all their ends."""

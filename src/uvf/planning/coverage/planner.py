@@ -205,7 +205,9 @@ class _Driven:
         start = self.task.start
         here = next(field.rings)[0] if start is None else np.array((start.x, start.y))
         passes = border_passes(field, width, self.vehicle.headlands, here)
-        inner = field.shrunk(self.vehicle.headlands * width) if passes else field
+        inner = field.shrunk(self.vehicle.headlands * width) if passes else None
+        if self.vehicle.headlands == 0:
+            inner = field
         for ring in passes:
             if start is not None:
                 self._join(path, start, End(*ring[0].tolist()))

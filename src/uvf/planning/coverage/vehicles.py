@@ -40,8 +40,9 @@ class SurveyAircraft:
 class GroundVehicle:
     """A ground vehicle at ``speed`` [m/s] that never leaves the field; ``radius`` [m] of its turns, 0: on the spot.
 
-    headlands: passes along every border, within which the swaths lie. A vehicle that does not turn on the spot turns on them, where
-    there is room, and beyond them elsewhere.
+    headlands: passes along every border, within which the swaths lie; without them the ends of swaths at slanted borders, which may not
+    be longer than the field, leave something out. A vehicle that does not turn on the spot turns on them, where there is room, and
+    beyond them elsewhere.
     """
 
     speed: float
