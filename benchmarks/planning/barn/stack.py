@@ -18,7 +18,7 @@ from uvf.planning.local.dwa import Dwa, DwaSettings
 from uvf.planning.local.mppi import Mppi, MppiSettings
 from uvf.planning.local.planner import Limits
 from uvf.planning.navigation.execution import Executor
-from uvf.planning.navigation.navigator import Goal, Navigator, NavigatorSettings
+from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings
 from uvf.planning.navigation.progress import ProgressSettings
 from uvf.planning.navigation.routes import LayerRoutes
 
@@ -62,11 +62,11 @@ class MaplessStack:
             replan_period=REPLAN, circumscribed_radius=controller.footprint.circumscribed_radius, progress=progress
         )
         self.navigator = Navigator(LayerRoutes(controller), settings)
-        self._goal: Goal | None = None
+        self._goal: NavigationGoal | None = None
 
     def reset(self, goal_in_odom: Pose2) -> None:
         """Takes a goal."""
-        self._goal = Goal(goal_in_odom[0], goal_in_odom[1])
+        self._goal = NavigationGoal(goal_in_odom[0], goal_in_odom[1])
 
     def command(self, t: float, ranges: Floats, odom_from_base: Pose2, velocity: Twist) -> tuple[float, float]:
         """Velocity [m/s, rad/s]."""

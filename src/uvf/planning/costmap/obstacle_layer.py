@@ -49,7 +49,7 @@ def clear_beams(cells: Bytes, frame: tuple[float, float, float], eye: tuple[floa
 
 @compiled
 def mark_ends(cells: Bytes, seen: Times, frame: tuple[float, float, float], ends: Floats, t: float) -> None:
-    """Sets the cells of the points (n, 2) [m] to lethal, seen at ``t`` [s]; points off the grid are passed over."""
+    """Sets the cells of the points (n, 2) [m] to lethal, seen at the age ``t``; points off the grid are passed over."""
     rows, columns = cells.shape
     for k in range(ends.shape[0]):
         r, c = int(np.floor((ends[k, 1] - frame[1]) / frame[2])), int(np.floor((ends[k, 0] - frame[0]) / frame[2]))
@@ -60,9 +60,10 @@ def mark_ends(cells: Bytes, seen: Times, frame: tuple[float, float, float], ends
 
 @dataclass(frozen=True)
 class Observation:
-    """What one sensor saw at ``t`` [s]: from ``eye`` (x, y) [m], beams to ``ends`` (n, 2) [m], all in the window's frame."""
+    """What one sensor saw from ``eye`` (x, y) [m] by beams to ``ends`` (n, 2) [m], all in the window's frame."""
 
-    t: float
+    age: float
+    """What the lifetime of obstacles is measured by: time [s] or distance travelled [m]; it only rises."""
     eye: Point
     ends: Floats
     hits: Mask
@@ -72,8 +73,8 @@ class Observation:
 class ObstacleLayer:
     """Obstacles in a square window that moves with the vehicle, in a frame that does not jump (odom) or in the map's.
 
-    size: side of the window [m]; resolution [m]; obstacle_lifetime: time [s] after which an obstacle that no beam has touched again is
-    forgotten, so that nothing stays for ever where the sensors do not look.
+    size: side of the window [m]; resolution [m]; obstacle_lifetime: age (of observations: time [s] or travel [m]) after which an obstacle
+    that no beam has touched again is forgotten, so that nothing stays for ever where the sensors do not look.
     """
 
     def __init__(self, size: float, resolution: float, obstacle_lifetime: float = np.inf) -> None:
@@ -108,12 +109,21 @@ class ObstacleLayer:
         whole = np.isfinite(seen.ends).all(axis=1)
         frame = (*self.origin, self.resolution)
         clear_beams(self.cells, frame, seen.eye, seen.ends[whole])
-        mark_ends(self.cells, self._seen, frame, seen.ends[whole & seen.hits], seen.t)
+        mark_ends(self.cells, self._seen, frame, seen.ends[whole & seen.hits], seen.age)
 
-    def forget(self, t: float) -> None:
-        """Frees obstacles that were last seen longer ago than ``obstacle_lifetime`` at ``t`` [s]."""
+    def forget(self, age: float) -> None:
+        """Frees obstacles that were last seen longer ago than ``obstacle_lifetime`` at ``age``."""
         if np.isfinite(self.obstacle_lifetime):
-            self.cells[(self.cells == LETHAL) & (self._seen < t - self.obstacle_lifetime)] = FREE_SPACE
+            self.cells[(self.cells == LETHAL) & (self._seen < age - self.obstacle_lifetime)] = FREE_SPACE
+
+    def lethal_near(self, centre: Point, reach: float) -> Floats:
+        """(n, 2) m centres of the obstacle cells within ``reach`` [m] of ``centre`` along both axes."""
+        n, half = len(self.cells), int(np.ceil(reach / self.resolution))
+        row, column = (int(np.floor((c - o) / self.resolution)) for c, o in ((centre[1], self.origin[1]), (centre[0], self.origin[0])))
+        rows, columns = (slice(min(max(at - half, 0), n), min(max(at + half + 1, 0), n)) for at in (row, column))
+        found = np.argwhere(self.cells[rows, columns] == LETHAL) + np.array((rows.start, columns.start))
+        out: Floats = (found[:, ::-1] + 0.5) * self.resolution + np.array(self.origin)
+        return out
 
     def clear(self, beyond: float = 0.0, centre: Point | None = None) -> None:
         """Forgets everything farther than ``beyond`` [m] from ``centre`` [m]: it is unknown again (the resets of move_base)."""

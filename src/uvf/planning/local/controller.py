@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass, field
 from enum import Enum
-from math import cos, sin
+from math import cos, hypot, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.maths.se2 import Pose2, transform
+from uvf.maths.rotations import wrap
+from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.planning.costmap.costmap import Costmap
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation, cost_factors
@@ -22,6 +23,9 @@ Floats = NDArray[np.float64]
 
 LEAVING_COST = 30.0
 """Factor on the cost of ground within the inscribed radius of an obstacle, when it has to be left."""
+NEAR = 4.0  # m, farther points cannot be reached before the next scan
+REMEMBERED = 1.0  # m within which the stop heeds obstacles that are out of view
+TURN_COUNTS = 0.3  # m/rad
 WAY_OUT = 0.3  # m about the vehicle within which it may leave such ground
 
 
@@ -31,7 +35,7 @@ class ControllerSettings:
 
     size: float = 8.0  # m, side of the window in which obstacles are remembered
     resolution: float = 0.05  # m
-    obstacle_lifetime: float = 5.0  # s without being seen again
+    obstacle_memory: float = 6.0  # m of travel (a radian counts as 0.3 m) after which an obstacle not seen again is forgotten
     obstacle_range: float = 10.0  # m, farther ones are not marked
     inflation: Inflation = field(default_factory=lambda: Inflation(0.55, 4.0))
     cost_travel_multiplier: float = 4.0
@@ -70,11 +74,13 @@ class LocalController:
         self.settings, self.limits = settings, limits
         self.footprint = footprint
         self.planner = planner
-        self.layer = ObstacleLayer(settings.size, settings.resolution, settings.obstacle_lifetime)
+        self.layer = ObstacleLayer(settings.size, settings.resolution, settings.obstacle_memory)
         self.moving = MovingObjects()
         self._plan_footprint = footprint.padded(settings.margin)
         self._factors = cost_factors(settings.cost_travel_multiplier, 1.0)
         self._factors[LEAVING] = LEAVING_COST
+        self._odometer = 0.0  # m
+        self._pose: Pose2 | None = None
         self._near: Floats = np.zeros((0, 2))
         self._last = STOP
 
@@ -92,9 +98,18 @@ class LocalController:
         if far.any():
             share = np.where(far, self.settings.obstacle_range / np.maximum(ranges, 1e-9), 1.0)[:, None]
             ends = np.array((x, y)) + (ends - np.array((x, y))) * share
-        self.layer.observe(Observation(t, (x, y), ends, hits))
-        self.layer.forget(t)
-        self._near = points[(ranges > 0.0) & (np.abs(points) <= self.settings.size / 2).all(axis=1)]
+        self._travel(pose)
+        self.layer.observe(Observation(self._odometer, (x, y), ends, hits))
+        self.layer.forget(self._odometer)
+        near = points[(ranges > 0.0) & (np.abs(points) <= NEAR).all(axis=1)]
+        self._near = np.concatenate((near, transform(inverse(pose), self.layer.lethal_near((pose[0], pose[1]), REMEMBERED))))
+
+    def _travel(self, pose: Pose2) -> None:
+        """What is remembered is known the worse the farther the vehicle has come since: odometry drifts by the way, not by time."""
+        if self._pose is not None:
+            turned = abs(wrap(pose[2] - self._pose[2]))
+            self._odometer += hypot(pose[0] - self._pose[0], pose[1] - self._pose[1]) + TURN_COUNTS * turned
+        self._pose = pose
 
     def costmap(self, size: float | None = None) -> Costmap:
         """What is known round the vehicle, or its middle of ``size`` [m], for planning."""
@@ -139,7 +154,8 @@ class LocalController:
         return self._last
 
     def made_safe(self, wanted: tuple[float, float], velocity: tuple[float, float]) -> tuple[float, float]:
-        """The wanted velocity, slowed so that the vehicle can stop before everything that the last scan shows.
+        """The wanted velocity, slowed so that the vehicle can stop before everything that the last scan shows or that is
+        remembered near it.
 
         velocity: the measured one [m/s, rad/s]; where it is the larger of the two, it counts.
         """

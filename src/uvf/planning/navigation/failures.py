@@ -10,6 +10,7 @@ class Failure(Enum):
     NONE = ""
     NO_MAP = "there is no map to plan on yet"
     START_OCCUPIED = "the vehicle stands in an obstacle of its map"
+    START_OUTSIDE_MAP = "the vehicle is outside its map: its pose or the map is wrong"
     GOAL_OCCUPIED = "the goal lies in an obstacle"
     GOAL_OUTSIDE_MAP = "the goal lies outside the map"
     NO_VALID_PATH = "no way leads to the goal"

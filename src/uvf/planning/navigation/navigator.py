@@ -18,9 +18,11 @@ from uvf.planning.smoothing import length
 
 Floats = NDArray[np.float64]
 
+TOLD_AGAIN = 5.0  # s between two entries of the log about a blocked path: what moves blocks and frees it often
+
 
 @dataclass(frozen=True)
-class Goal:
+class NavigationGoal:
     """Where to go: x, y [m, planning frame], and yaw [rad], None = any."""
 
     x: float
@@ -41,12 +43,16 @@ class Route:
 class RouteSource(Protocol):
     """Plans on what is known now."""
 
-    def plan(self, pose: Pose2, goal: Goal) -> Route:
+    def plan(self, pose: Pose2, goal: NavigationGoal) -> Route:
         """The best path to the goal."""
         ...
 
     def is_free(self, path: Floats) -> bool:
         """Whether nothing stands on a path (n, 2) [m] any more than when it was planned."""
+        ...
+
+    def reset(self) -> None:
+        """Doubts what is remembered: what is seen now counts more."""
         ...
 
 
@@ -94,17 +100,17 @@ class Navigator:
         self.log: list[tuple[float, str]] = []
         self._source = source
         self._progress = ProgressChecker(settings.progress)
-        self._goal: Goal | None = None
+        self._goal: NavigationGoal | None = None
         self._status, self._failure, self._reason = Status.IDLE, Failure.NONE, ""
         self._directive = Directive(0)
         self._planned_at = -inf
         self._tried = 0
         self._count, self._begun_with = 0, inf
         self._until = -inf
-        self._speed = 0.0
+        self._speed, self._blocked_at = 0.0, -inf
         self._at: tuple[float, Pose2] | None = None
 
-    def start(self, t: float, goal: Goal) -> None:
+    def start(self, t: float, goal: NavigationGoal) -> None:
         """Takes a goal at ``t`` [s]; the one before is preempted."""
         if not (np.isfinite(goal.x) and np.isfinite(goal.y) and (goal.yaw is None or np.isfinite(goal.yaw))):
             raise ValueError(f"goal: ({goal.x}, {goal.y}, {goal.yaw}); its coordinates must be finite [m, m, rad]")
@@ -145,7 +151,7 @@ class Navigator:
             self._follow(t, pose, self._goal, report)
         return self._directive
 
-    def _follow(self, t: float, pose: Pose2, goal: Goal, report: Report) -> None:
+    def _follow(self, t: float, pose: Pose2, goal: NavigationGoal, report: Report) -> None:
         blocked = self._directive.action == Action.FOLLOW and not self._source.is_free(self._directive.path)
         if t - self._planned_at >= self.settings.replan_period or blocked or self._directive.action != Action.FOLLOW:
             self._planned_at = t
@@ -155,7 +161,8 @@ class Navigator:
                 return
             if self._directive.action != Action.FOLLOW:
                 self._progress.reset(t, pose)
-            if blocked:
+            if blocked and t - self._blocked_at >= TOLD_AGAIN:
+                self._blocked_at = t
                 self._tell(t, "the path is blocked; another one is taken")
                 self._progress.new_way(t)
             self._lead(route.path, goal.yaw)
@@ -193,6 +200,8 @@ class Navigator:
         kind, amount = attempt.recovery, attempt.amount
         if kind in (Recovery.CONSERVATIVE_RESET, Recovery.AGGRESSIVE_RESET):
             self._direct(Action.STOP, clear_beyond=amount)
+            if kind == Recovery.AGGRESSIVE_RESET:
+                self._source.reset()
             self._until = t + 0.5
         elif kind == Recovery.WAIT:
             self._direct(Action.STOP)
@@ -210,7 +219,7 @@ class Navigator:
         self._status, self._planned_at = Status.FOLLOWING, -inf
         self._progress.reset(t, pose)
 
-    def _is_reached(self, pose: Pose2, goal: Goal) -> bool:
+    def _is_reached(self, pose: Pose2, goal: NavigationGoal) -> bool:
         if hypot(pose[0] - goal.x, pose[1] - goal.y) > self.settings.goal_tolerance:
             return False
         return goal.yaw is None or abs(wrap(pose[2] - goal.yaw)) <= self.settings.yaw_goal_tolerance

@@ -8,7 +8,7 @@ from uvf.planning.costmap.costmap import Cell, Costmap
 from uvf.planning.costmap.inflation import INSCRIBED, NO_INFORMATION
 from uvf.planning.local.controller import LocalController
 from uvf.planning.navigation.failures import Failure
-from uvf.planning.navigation.navigator import Goal, Route
+from uvf.planning.navigation.navigator import NavigationGoal, Route
 from uvf.planning.search.grid_search import GridSearch
 from uvf.planning.smoothing import resample
 
@@ -24,33 +24,49 @@ class LayerRoutes:
     def __init__(self, controller: LocalController) -> None:
         self._controller = controller
 
-    def plan(self, pose: Pose2, goal: Goal) -> Route:
+    def plan(self, pose: Pose2, goal: NavigationGoal) -> Route:
         """The best path to the goal, or to the place in its direction where the window ends."""
-        costs = self._controller.leaving(self._controller.costmap(), pose)
-        cell = costs.cell(goal.x, goal.y)
-        if costs.holds(cell) and INSCRIBED <= costs.values[cell] < NO_INFORMATION:
-            return Route(None, Failure.GOAL_OCCUPIED)
-        at = cell if costs.holds(cell) else _towards(costs, pose, goal)
-        found = GridSearch(costs.values, self._controller.factors).astar(costs.cell(pose[0], pose[1]), at)
-        if found is None:
-            return Route(None, Failure.NO_VALID_PATH)
-        points = costs.points(found.cells)
-        points[0] = pose[:2]
-        if costs.holds(cell):
-            points[-1] = goal.x, goal.y
-        return Route(resample(points))
+        return route_over(self._controller.leaving(self._controller.costmap(), pose), self._controller.factors, pose, goal)
 
     def is_free(self, path: Floats) -> bool:
         """Whether the vehicle's centre may still be everywhere on the path."""
-        costs = self._controller.costmap()
-        ahead = path[np.hypot(*(path - path[0]).T) > UNDERFOOT] if len(path) else path
-        cells = np.floor((ahead[:, ::-1] - np.array(costs.origin)[::-1]) / costs.resolution).astype(np.int64)
-        inside = ((cells >= 0) & (cells < costs.values.shape)).all(axis=1)
-        values = costs.values[cells[inside, 0], cells[inside, 1]]
-        return not ((values >= INSCRIBED) & (values < NO_INFORMATION)).any()
+        return still_free(self._controller.costmap(), path)
+
+    def reset(self) -> None:
+        """Nothing is known but what the layer holds."""
 
 
-def _towards(costs: Costmap, pose: Pose2, goal: Goal) -> Cell:
+def route_over(costs: Costmap, factors: Floats, pose: Pose2, goal: NavigationGoal) -> Route:
+    """The cheapest route by A* over a costmap, to the goal or, where it lies beyond, to the border in its direction.
+
+    factors: (256,) cost factors [-] by value.
+    """
+    start, cell = costs.cell(pose[0], pose[1]), costs.cell(goal.x, goal.y)
+    if not costs.holds(start):
+        return Route(None, Failure.START_OUTSIDE_MAP)
+    if costs.holds(cell) and INSCRIBED <= costs.values[cell] < NO_INFORMATION:
+        return Route(None, Failure.GOAL_OCCUPIED)
+    at = cell if costs.holds(cell) else _towards(costs, pose, goal)
+    found = GridSearch(costs.values, factors).astar(start, at)
+    if found is None:
+        return Route(None, Failure.NO_VALID_PATH)
+    points = costs.points(found.cells)
+    points[0] = pose[:2]
+    if costs.holds(cell):
+        points[-1] = goal.x, goal.y
+    return Route(resample(points))
+
+
+def still_free(costs: Costmap, path: Floats) -> bool:
+    """Whether the vehicle's centre may be everywhere on a path (n, 2) [m], but for its very beginning, where the vehicle stands."""
+    ahead = path[np.hypot(*(path - path[0]).T) > UNDERFOOT] if len(path) else path
+    cells = np.floor((ahead[:, ::-1] - np.array(costs.origin)[::-1]) / costs.resolution).astype(np.int64)
+    inside = ((cells >= 0) & (cells < costs.values.shape)).all(axis=1)
+    values = costs.values[cells[inside, 0], cells[inside, 1]]
+    return not ((values >= INSCRIBED) & (values < NO_INFORMATION)).any()
+
+
+def _towards(costs: Costmap, pose: Pose2, goal: NavigationGoal) -> Cell:
     """The cell in the goal's direction where the window ends; if it is not free, the nearest one to it that is."""
     rows, columns = costs.values.shape
     half = np.array((columns, rows)) * costs.resolution / 2 - INSET
