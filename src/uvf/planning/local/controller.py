@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from enum import Enum
-from math import cos, hypot, sin
+from math import atan2, cos, hypot, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,11 @@ Floats = NDArray[np.float64]
 LEAVING_COST = 30.0
 """Factor on the cost of ground within the inscribed radius of an obstacle, when it has to be left."""
 NEAR = 4.0  # m, farther points cannot be reached before the next scan
+TURN_FROM = 2.2  # rad: with its path behind it, a vehicle that is slow turns on the spot first (Nav2: rotation shim)
+SLOW = 0.2  # m/s
+AHEAD = 0.6  # m along the path to where its direction is taken
 REMEMBERED = 1.0  # m within which the stop heeds obstacles that are out of view
+ROOM_WINDOW = 0.5  # m more than the footprint in which room to turn is looked for
 TURN_COUNTS = 0.3  # m/rad
 WAY_OUT = 0.3  # m about the vehicle within which it may leave such ground
 
@@ -120,6 +124,12 @@ class LocalController:
         """(256,) cost factors [-] by value, unknown ground like free."""
         return self._factors
 
+    def has_room_to_turn(self, pose: Pose2) -> bool:
+        """Whether no known obstacle is in the way of turning on the spot."""
+        costs = self.costmap(2.0 * self.footprint.circumscribed_radius + ROOM_WINDOW)
+        cell = costs.cell(pose[0], pose[1])
+        return not costs.holds(cell) or int(costs.blocked[cell]) == 0
+
     def leaving(self, costs: Costmap, pose: Pose2) -> Costmap:
         """The costmap in which the vehicle may leave a place that is too near to an obstacle."""
         return with_way_out(costs, costs.cell(pose[0], pose[1]), WAY_OUT)
@@ -133,6 +143,10 @@ class LocalController:
         costs = self.leaving(self.costmap(settings.window.size + 1.0), pose)
         grids = local_window(costs, (pose[0], pose[1]), path, self._factors, settings.window)
         state = self._ahead(pose, velocity)
+        bearing = _bearing(pose, path)
+        if abs(bearing) > TURN_FROM and abs(velocity[0]) < SLOW and self.has_room_to_turn(pose):
+            rate = min(abs(bearing), self.limits.max_turn_rate)
+            return DriveResult(*self.move(pose, velocity, (0.0, rate if bearing > 0.0 else -rate)), Drive.DRIVING)
         wanted = self.planner.command(Situation(state, grids, path, self.moving.moving()))
         if wanted is None:
             self._last = within(self.limits, state, STOP, settings.period)
@@ -176,3 +190,12 @@ class LocalController:
         w = min(max(self._last[1], velocity[1] - dw), velocity[1] + dw)
         middle = pose[2] + w * d / 2
         return State(pose[0] + v * d * cos(middle), pose[1] + v * d * sin(middle), pose[2] + w * d, v, w)
+
+
+def _bearing(pose: Pose2, path: Floats) -> float:
+    """Direction [rad, relative to the vehicle's heading] of the path a little ahead of the point that is nearest to the vehicle."""
+    distances = np.hypot(path[:, 0] - pose[0], path[:, 1] - pose[1])
+    ahead = path[int(np.argmin(distances)) :]
+    farther = np.flatnonzero(np.hypot(ahead[:, 0] - pose[0], ahead[:, 1] - pose[1]) >= AHEAD)
+    x, y = ahead[farther[0] if len(farther) else -1]
+    return wrap(atan2(y - pose[1], x - pose[0]) - pose[2])

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
 from uvf.planning.costmap.headings import HEADINGS, STEP
+from uvf.planning.costmap.inflation import NO_INFORMATION
 from uvf.planning.local.planner import Limits, State
 from uvf.planning.local.window import Grids
 
@@ -67,6 +68,13 @@ def _gap(sides: Floats, x: float, y: float, cosine: float, sine: float) -> float
 
 
 @compiled
+def _is_unseen(grids: Grids, x: float, y: float) -> bool:
+    """Whether a place in the window is unknown."""
+    r, c = int(np.floor((y - grids.frame[1]) / grids.frame[2])), int(np.floor((x - grids.frame[0]) / grids.frame[2]))
+    return bool(0 <= r < grids.values.shape[0] and 0 <= c < grids.values.shape[1] and grids.values[r, c] == NO_INFORMATION)
+
+
+@compiled
 def _is_blocked(grids: Grids, x: float, y: float, yaw: float) -> bool:
     """Whether the footprint touches an obstacle at a pose."""
     r, c = int(np.floor((y - grids.frame[1]) / grids.frame[2])), int(np.floor((x - grids.frame[0]) / grids.frame[2]))
@@ -119,6 +127,10 @@ def roll_out(
             value, beside = 0, 0.0
             if 0 <= r < rows and 0 <= c < columns:
                 value, beside = int(grids.values[r, c]), float(grids.off_path[r, c])
+                if value == NO_INFORMATION:
+                    value = 0
+                if speed < 0.0 and _is_unseen(grids, x - others.circumscribed_radius * cosine, y - others.circumscribed_radius * sine):
+                    collided = 1.0 - i / horizon
                 heading = int(np.floor(yaw / STEP + 0.5)) & (HEADINGS - 1)
                 if (grids.blocked[r, c] >> np.uint64(heading)) & np.uint64(1):
                     if inside:  # it was there from the start: the sooner it is out the better

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from uvf.maths.grids import distance_field
 from uvf.planning.costmap.costmap import Costmap
 from uvf.planning.costmap.headings import blocked_headings
-from uvf.planning.costmap.inflation import LETHAL, NO_INFORMATION
+from uvf.planning.costmap.inflation import LETHAL
 from uvf.planning.search.grid_search import GridSearch
 
 Bytes = NDArray[np.uint8]
@@ -27,7 +27,7 @@ class Grids(NamedTuple):
     """Arrays (rows, columns) that rollouts look up; the first is the vehicle's window, the others have its shape."""
 
     values: Bytes
-    """0 to 254; unknown ground counts as free."""
+    """0 to 254, 255 = unknown, which counts as free ahead of the vehicle, and is not backed into."""
     blocked: Bits
     """Bit ``heading_bin(yaw)`` set: the footprint touches an obstacle."""
     close: Bits
@@ -75,7 +75,6 @@ def local_window(costs: Costmap, here: Point, path: Floats, factors: Floats, set
         marks[cells[inside, 0], cells[inside, 1]] = True
         off_path = distance_field(marks) * costs.resolution
     occupied = values == LETHAL
-    values[values == NO_INFORMATION] = 0
     blocked, close = (
         blocked_headings(occupied, costs.resolution, footprint)
         for footprint in (costs.footprint, costs.footprint.padded(settings.soft_margin))

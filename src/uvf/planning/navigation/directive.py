@@ -29,7 +29,7 @@ class Directive:
     path: Floats = field(default_factory=lambda: np.zeros((0, 2)))
     """(n, 2) m, for FOLLOW."""
     heading: float | None = None  # rad, wanted at the path's end
-    amount: float = 0.0  # rad, anticlockwise, for SPIN; m for BACK_UP
+    amount: float = 0.0  # rad, anticlockwise, for SPIN; m for BACK_UP, at least: it goes on to where there is room to turn
     clear_beyond: float | None = None
     """m: obstacles farther away than this are forgotten when the directive comes."""
 

@@ -10,6 +10,8 @@ from uvf.planning.navigation.directive import Action, Directive, Report
 
 SPIN_RATE = 1.2  # rad/s
 BACK_UP_SPEED = 0.15  # m/s
+MOST_BACKED = 5.0
+"""Times the distance asked for that it backs up at most, to where it has room to turn."""
 BLOCKED_FOR = 1.0  # s of standing after which a recovery counts as impossible
 
 
@@ -50,7 +52,8 @@ class Executor:
             done = abs(self._turned) >= abs(directive.amount)
             wanted = (0.0, SPIN_RATE if directive.amount > 0 else -SPIN_RATE)
         else:
-            done = hypot(pose[0] - self._begun[0], pose[1] - self._begun[1]) >= directive.amount
+            backed = hypot(pose[0] - self._begun[0], pose[1] - self._begun[1])
+            done = backed >= directive.amount and (self.controller.has_room_to_turn(pose) or backed >= MOST_BACKED * directive.amount)
             wanted = (-BACK_UP_SPEED, 0.0)
         if done:
             self.report = Report(directive.number, done=True)

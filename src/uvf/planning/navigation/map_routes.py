@@ -39,6 +39,10 @@ class MapRoutes:
         """Whether the vehicle's centre may still be everywhere on the path."""
         return still_free(self._costmap(), path)
 
+    def has_room_to_turn(self, pose: Pose2) -> bool:
+        """Whether no known obstacle is in the way of turning on the spot."""
+        return self._controller.has_room_to_turn(pose)
+
     def reset(self) -> None:
         """From now on what is seen free is free."""
         self._trusts_sight = True

@@ -18,6 +18,7 @@ from uvf.planning.smoothing import length
 
 Floats = NDArray[np.float64]
 
+LONGEST = 12.0  # s that turning round or backing up may take
 TOLD_AGAIN = 5.0  # s between two entries of the log about a blocked path: what moves blocks and frees it often
 
 
@@ -49,6 +50,10 @@ class RouteSource(Protocol):
 
     def is_free(self, path: Floats) -> bool:
         """Whether nothing stands on a path (n, 2) [m] any more than when it was planned."""
+        ...
+
+    def has_room_to_turn(self, pose: Pose2) -> bool:
+        """Whether no known obstacle is in the way of turning on the spot."""
         ...
 
     def reset(self) -> None:
@@ -160,7 +165,8 @@ class Navigator:
                 self._fail(t, pose, route.failure, route.reason)
                 return
             if self._directive.action != Action.FOLLOW:
-                self._progress.reset(t, pose)
+                was_reset = self._directive.clear_beyond is not None
+                self._progress.reset(t, pose, self.settings.progress.time_allowance_after_reset if was_reset else None)
             if blocked and t - self._blocked_at >= TOLD_AGAIN:
                 self._blocked_at = t
                 self._tell(t, "the path is blocked; another one is taken")
@@ -189,6 +195,10 @@ class Navigator:
             self._end(t, Status.ABORTED, failure, reason)
             return
         attempt, self._tried = attempts[self._tried], self._tried + 1
+        if attempt.recovery == Recovery.CLEARING_ROTATION and not self._source.has_room_to_turn(pose):
+            self._tell(t, "no room to turn round")
+            self._fail(t, pose, failure, reason)
+            return
         self._count += 1
         if self._begun_with == inf and self._directive.action == Action.FOLLOW:
             self._begun_with = _remaining(self._directive.path, pose)
@@ -208,7 +218,7 @@ class Navigator:
             self._until = t + amount
         else:
             self._direct(Action.SPIN if kind == Recovery.CLEARING_ROTATION else Action.BACK_UP, amount=amount)
-            self._until = t + 8.0
+            self._until = t + LONGEST
 
     def _recover_on(self, t: float, pose: Pose2, report: Report) -> None:
         mine = report.number == self._directive.number
@@ -217,7 +227,6 @@ class Navigator:
         elif not (t >= self._until or (mine and report.done)):
             return
         self._status, self._planned_at = Status.FOLLOWING, -inf
-        self._progress.reset(t, pose)
 
     def _is_reached(self, pose: Pose2, goal: NavigationGoal) -> bool:
         if hypot(pose[0] - goal.x, pose[1] - goal.y) > self.settings.goal_tolerance:

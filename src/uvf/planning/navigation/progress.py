@@ -14,6 +14,7 @@ class ProgressSettings:
     required_movement_radius: float = 0.25  # m
     required_movement_angle: float = 0.6  # rad
     movement_time_allowance: float = 4.0  # s
+    time_allowance_after_reset: float = 1.5  # s: what was forgotten helps at once or not at all
     oscillation_time: float = 15.0  # s in which the way to go must become shorter
     oscillation_distance: float = 0.4  # m by which it must
 
@@ -24,13 +25,15 @@ class ProgressChecker:
     def __init__(self, settings: ProgressSettings) -> None:
         self.settings = settings
         self._moved_at: float | None = None
+        self._allowance = settings.movement_time_allowance
         self._place = Pose2(0.0, 0.0, 0.0)
         self._nearest = float("inf")
         self._nearer_at = 0.0
 
-    def reset(self, t: float, pose: Pose2) -> None:
-        """Begins to look at ``t`` [s]: after a new goal, a recovery, or a hold."""
+    def reset(self, t: float, pose: Pose2, allowance: float | None = None) -> None:
+        """Begins to look at ``t`` [s]: after a new goal, a recovery, or a hold. allowance: time to move [s], None = the usual one."""
         self._moved_at, self._place = t, pose
+        self._allowance = self.settings.movement_time_allowance if allowance is None else allowance
         self._nearest, self._nearer_at = float("inf"), t
 
     def look(self, t: float, pose: Pose2, way_to_go: float) -> None:
@@ -41,6 +44,7 @@ class ProgressChecker:
         moved = hypot(pose[0] - self._place[0], pose[1] - self._place[1]) >= s.required_movement_radius
         if moved or abs(wrap(pose[2] - self._place[2])) >= s.required_movement_angle:
             self._moved_at, self._place = t, pose
+            self._allowance = s.movement_time_allowance
         if way_to_go <= self._nearest - s.oscillation_distance:
             self._nearest, self._nearer_at = way_to_go, t
 
@@ -50,7 +54,7 @@ class ProgressChecker:
 
     def is_standing(self, t: float) -> bool:
         """Whether it has not moved for longer than allowed."""
-        return self._moved_at is not None and t - self._moved_at > self.settings.movement_time_allowance
+        return self._moved_at is not None and t - self._moved_at > self._allowance
 
     def is_oscillating(self, t: float) -> bool:
         """Whether it has moved for longer than allowed without getting nearer."""

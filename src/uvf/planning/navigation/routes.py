@@ -32,6 +32,10 @@ class LayerRoutes:
         """Whether the vehicle's centre may still be everywhere on the path."""
         return still_free(self._controller.costmap(), path)
 
+    def has_room_to_turn(self, pose: Pose2) -> bool:
+        """Whether no known obstacle is in the way of turning on the spot."""
+        return self._controller.has_room_to_turn(pose)
+
     def reset(self) -> None:
         """Nothing is known but what the layer holds."""
 
