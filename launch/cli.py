@@ -13,6 +13,7 @@ import typer
 from launch import settings
 from launch.commands.log import KeyArgument, LogArgument, log_app
 from launch.commands.map import map_app
+from launch.commands.plan import plan_app
 from launch.commands.sim import sim_app
 from launch.commands.slam import slam
 from launch.commands.vehicle import vehicle_app
@@ -27,6 +28,7 @@ app.add_typer(topic_app, name="topic")
 app.add_typer(node_app, name="node")
 app.add_typer(log_app, name="log")
 app.add_typer(map_app, name="map")
+app.add_typer(plan_app, name="plan")
 app.add_typer(sim_app, name="sim")
 app.add_typer(vehicle_app, name="vehicle")
 app.add_typer(world_app, name="world")
@@ -58,6 +60,7 @@ DEMO = "demo"
 AS_TODAY = "With these files instead of those attached to the log."
 RUN = "Folder of a run, or a log; by default the latest run."
 BENCHMARKS = f"Groups, each followed by the cases wanted of it: {', '.join(settings.benchmark_names())}."
+WORLDS = "Those of the data that are run: numbers, ranges FIRST:BEYOND:STEP, names or patterns, with commas between. By default all."
 RATE = "Simulation seconds per second, at most 1000; 0 = as fast as it goes."
 MISSION = "Name in missions/ or path of a mission file."
 MissionArgument = Annotated[str, typer.Argument(help=MISSION, callback=known_mission)]
@@ -278,12 +281,19 @@ def bench(
     data: Annotated[Path | None, typer.Option(envvar="UVF_DATA", help="Folder with data sets.")] = None,
     json: Annotated[Path | None, typer.Option(help="Write the figures there.")] = None,
     write: Annotated[bool, typer.Option("--write", help="Renew benchmarks/results.md.")] = False,
+    worlds: Annotated[str | None, typer.Option(help=WORLDS)] = None,
+    trials: Annotated[int | None, typer.Option(min=1, max=10_000, help="Runs in each world.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Of all random numbers.")] = None,
+    controller: Annotated[str | None, typer.Option(help="What drives, by its name.")] = None,
+    csv: Annotated[Path | None, typer.Option(help="Write a row for each run there.")] = None,
+    pictures: Annotated[Path | None, typer.Option(help="Draw each failed run into this folder.")] = None,
 ) -> None:
     """Measure: one table, the same figures as JSON."""
     from launch.commands.bench import run_groups
+    from launch.commands.bench_selection import Selection
 
     with bad_input_is_one_line():
-        run_groups(names, data, json, write)
+        run_groups(names, data, json, write, Selection(worlds, trials, seed, controller, csv, pictures))
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})

@@ -18,6 +18,7 @@ import typer
 import yaml
 from numpy.typing import NDArray
 
+from benchmarks.measuring.processes import one_thread_each
 from benchmarks.slam.evaluation.variants import VARIANTS
 from benchmarks.slam.logs import has_relations, logs_below
 from launch import settings
@@ -42,7 +43,6 @@ WARM_UP = 200
 """Readings of an extra run before the clock starts: what is compiled is compiled."""
 RESOLUTION = 0.05  # m
 NOTHING = Relations(np.zeros((0, 2)), np.zeros((0, 3)))
-ONE_THREAD = ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 PUBLISHED = ROOT / "benchmarks" / "slam" / "published.yaml"
 """Figures of others, as they were published: rows by the name of the log."""
 
@@ -98,16 +98,8 @@ def _outcome(log: Path, method: str, variant: str) -> Outcome:
 
 def alone(function: Callable[..., Result], *arguments: Any) -> Result:
     """``function(*arguments)`` in a process of its own that has one core and one thread."""
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
-    try:
-        with ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=_take_one_core) as pool:
-            return pool.submit(function, *arguments).result()
-    finally:
-        for name, value in before.items():
-            os.environ.pop(name)
-            if value is not None:
-                os.environ[name] = value
+    with one_thread_each(), ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=_take_one_core) as pool:
+        return pool.submit(function, *arguments).result()
 
 
 def _take_one_core() -> None:

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from launch.commands.bench_page import BenchmarkFacts, facts_now, notes_of, replace_section, verdicts
+from launch.commands.bench_selection import EVERYTHING, Selection, check_known
 from launch.settings import ROOT, benchmark_group, benchmark_modules
 from uvf.models.yaml_data import BadInput, nearest
 
@@ -22,14 +23,15 @@ WIDTH = 200  # columns, of a table that goes into a file
 RESULTS = ROOT / "benchmarks" / "results.md"
 
 
-def run_groups(names: Sequence[str], data: Path | None, json_file: Path | None, write: bool) -> None:
+def run_groups(names: Sequence[str], data: Path | None, json_file: Path | None, write: bool, selection: Selection = EVERYTHING) -> None:
     """Runs benchmark groups, each followed by its wanted cases (none = all); names are looked up before anything runs. Raises BadInput."""
     wanted = _wanted(names)
-    chosen = {group: _chosen(group, cases, data) for group, cases in wanted.items()}
+    chosen = {group: _chosen(group, cases, data, selection) for group, cases in wanted.items()}
+    selection.begin()
     console = Console(width=None if sys.stdout.isatty() else WIDTH)
     measured: Figures = {}
     for group, cases in chosen.items():
-        before = facts_now([group, *wanted[group], *(["--data", "DIR"] if data else [])])
+        before = facts_now([group, *wanted[group], *(["--data", "DIR"] if data else []), *selection.words()])
         rows = _run(group, cases, data)
         measured |= rows
         console.print(_table(group, rows))
@@ -57,15 +59,17 @@ def _write(group: str, rows: Figures, facts: BenchmarkFacts) -> None:
     RESULTS.write_text(replace_section(page, group, rows, lines), encoding="utf-8")
 
 
-def _chosen(group: str, wanted: Sequence[str], data: Path | None) -> dict[str, Case]:
+def _chosen(group: str, wanted: Sequence[str], data: Path | None, selection: Selection) -> dict[str, Case]:
     """A name stands for the case of that name, or for all whose names begin with it and a colon. Raises BadInput."""
-    cases = cases_of(importlib.import_module(benchmark_modules()[group]), data)
+    module = importlib.import_module(benchmark_modules()[group])
+    cases = cases_of(module, data, selection)
     chosen: dict[str, Case] = {}
     for name in wanted:
         found = {case: cases[case] for case in cases if case == name or case.startswith(f"{name}:")}
         if not found:
             raise BadInput(f"no case '{name}' in {group}; {nearest(name, cases)}")
         chosen |= found
+    check_known(group, chosen or cases, getattr(module, "OPTIONS", {}), selection)
     return chosen or cases
 
 
@@ -80,9 +84,14 @@ def _run(group: str, cases: Mapping[str, Case], data: Path | None) -> Figures:
     return rows
 
 
-def cases_of(module: Any, data: Path | None) -> dict[str, Case]:
-    """The cases that a group measures; CASES may be a function of the data folder. Raises BadInput."""
-    found: dict[str, Case] = module.CASES(data) if callable(module.CASES) else module.CASES
+def cases_of(module: Any, data: Path | None, selection: Selection = EVERYTHING) -> dict[str, Case]:
+    """The cases that a group measures; CASES may be a function of the data folder, or of that and the selection. Raises BadInput."""
+    if not callable(module.CASES):
+        found: dict[str, Case] = module.CASES
+    elif hasattr(module, "OPTIONS"):
+        found = module.CASES(data, selection)
+    else:
+        found = module.CASES(data)
     return found
 
 

@@ -12,8 +12,9 @@ from uvf.maths.se3 import Transform
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.yaml_data import BadInput
 from uvf.planning.collision_check import safe_share
-from uvf.planning.costmap import RobotFootprint
-from uvf.planning.navigator import GlobalPlanner
+from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.costmap.inflation import Inflation
+from uvf.planning.global_planner import GlobalPlanner, PlannedBody
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.sensors.fitted import sweeping_of
 
@@ -46,7 +47,7 @@ def _hosts(member: MissionVehicle) -> list[ServiceInstance]:
 
 def _warm_up() -> None:
     """Compiles the kernels, or loads them from their cache, before the first step."""
-    navigator = GlobalPlanner(RobotFootprint(0.1, 0.3, 2.0))
+    navigator = GlobalPlanner(PlannedBody(RobotFootprint.circle(0.1), Inflation(0.3, 5.0)))
     navigator.see(np.zeros((20, 20), dtype=np.int8), (0.05, (0.0, 0.0)))
     navigator.plan((0.2, 0.2), (0.8, 0.8))
     navigator.refusal((0.2, 0.2), (0.8, 0.8))

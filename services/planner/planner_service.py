@@ -32,10 +32,11 @@ from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse, transform
 from uvf.models.keys import key
 from uvf.models.params import Params
-from uvf.planning.costmap import RobotFootprint
+from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.exploration import Explorer, Patrol
 from uvf.planning.frontiers import FrontierWeights
-from uvf.planning.navigator import GlobalPlanner, PlannedPath
+from uvf.planning.global_planner import GlobalPlanner, PlannedBody, PlannedPath
 from uvf.planning.smoothing import length
 from uvf.runtime.contract.declaration import Reads, Writes, answers, call, optional, replies, request, topic
 from uvf.runtime.contract.service import Answer, Service
@@ -55,8 +56,9 @@ class PlannerParams(Params, frozen=True):
     """Parameters of the planner."""
 
     margin: Annotated[Positive, key("m", "Distance kept from obstacles beyond the vehicle's radius.")] = 0.03
-    inflation_radius: Annotated[Positive, key("m", "Distance from obstacles beyond which a path costs no more.")] = 0.35
-    cost_scaling_factor: Annotated[float, Meta(ge=1), key("", "Cost factor of a path right along an obstacle.")] = 6.0
+    inflation_radius: Annotated[Positive, key("m", "Distance from obstacles beyond which a path costs no more.")] = 0.55
+    cost_scaling_factor: Annotated[Positive, key("1/m", "Rate at which the cost decays with the distance from an obstacle.")] = 6.0
+    cost_travel_multiplier: Annotated[float, Meta(ge=0), key("", "Weight of costs beside length; 0: the shortest path.")] = 5.0
     goal_tolerance: Annotated[Positive, key("m", "Distance at which a goal is reached.")] = 0.12
     look_tolerance: Annotated[Positive, key("m", "Distance at which a frontier is reached; it only has to be seen.")] = 0.3
     wait_at_goal: Annotated[float, Meta(ge=0), key("s", "Time at an operator's goal, reached or cancelled, before the job continues.")] = (
@@ -183,9 +185,11 @@ class PlannerService(Service):
         )
 
     @property
-    def _body(self) -> RobotFootprint:
-        taste = self.params
-        return RobotFootprint(self._radius + taste.margin, taste.inflation_radius, taste.cost_scaling_factor, self._sensor_offset)
+    def _body(self) -> PlannedBody:
+        params = self.params
+        footprint = RobotFootprint.circle(self._radius + params.margin)
+        inflation = Inflation(params.inflation_radius, params.cost_scaling_factor)
+        return PlannedBody(footprint, inflation, params.cost_travel_multiplier, self._sensor_offset)
 
     @property
     def _taste(self) -> FrontierWeights:

@@ -4,17 +4,19 @@ import numpy as np
 import pytest
 
 from tests.services.planner.plans import room
-from uvf.planning.costmap import RobotFootprint, make_costmap
+from uvf.planning.costmap.costmap import make_costmap
+from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.costmap.inflation import INSCRIBED, Inflation, cost_factors
 from uvf.planning.exploration import SHUN_TIME, Explorer, Patrol
 from uvf.planning.frontiers import FrontierWeights, frontiers
-from uvf.planning.search import CostToGo
+from uvf.planning.search.grid_search import GridSearch
 
-BODY = RobotFootprint(radius=0.1, inflation_radius=0.2, cost_scaling_factor=3.0)
+BODY, INFLATION = RobotFootprint.circle(0.1), Inflation(0.2, 6.0)
 TASTE = FrontierWeights(least_size=4, view=0.3, worth=0.5)
 
 
 def costs_of(cells):
-    return make_costmap(cells, (0.05, (0.0, 0.0)), BODY)
+    return make_costmap(cells, (0.05, (0.0, 0.0)), BODY, INFLATION)
 
 
 def two_doors():
@@ -28,11 +30,11 @@ def two_doors():
 
 
 def ways_from(costs, x, y):
-    return CostToGo(costs.cost, costs.cell(x, y))
+    return GridSearch(costs.values, cost_factors(2.0)).cost_to_go(costs.cell(x, y))
 
 
 def none_shunned(costs):
-    return np.zeros(costs.cost.shape, dtype=bool)
+    return np.zeros(costs.values.shape, dtype=bool)
 
 
 def test_both_openings_are_frontiers_and_the_walls_are_not():
@@ -99,7 +101,7 @@ def test_a_patrol_visits_all_ends_of_the_room():
         patrol.reached()
     assert min(x for x, _ in seen) < 1.0
     assert max(x for x, _ in seen) > 5.0
-    assert all(costs.cost[costs.cell(*p)] >= 0 for p in seen)
+    assert all(costs.values[costs.cell(*p)] < INSCRIBED for p in seen)
 
 
 def test_a_patrol_whose_goal_is_no_longer_on_the_map_goes_elsewhere():

@@ -5,7 +5,7 @@ from schemas.messages import Fence
 from schemas.topics import SYSTEM
 from uvf.models import names
 from uvf.models.mission.fence import MOST_VERTICES, MOST_ZONES, FenceAction
-from uvf.planning.navigator import MOST_POINTS
+from uvf.planning.global_planner import MOST_POINTS
 
 
 def test_names_are_held_to_the_same_patterns():

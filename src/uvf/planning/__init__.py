@@ -5,22 +5,26 @@ from typing import TYPE_CHECKING
 from uvf.lazy import lazily
 
 if TYPE_CHECKING:
-    from uvf.planning.costmap import Costmap as Costmap
-    from uvf.planning.costmap import RobotFootprint as RobotFootprint
-    from uvf.planning.costmap import make_costmap as make_costmap
+    from uvf.planning.costmap.costmap import Costmap as Costmap
+    from uvf.planning.costmap.costmap import make_costmap as make_costmap
+    from uvf.planning.costmap.footprint import RobotFootprint as RobotFootprint
+    from uvf.planning.costmap.inflation import Inflation as Inflation
+    from uvf.planning.costmap.inflation import cost_factors as cost_factors
     from uvf.planning.exploration import Explorer as Explorer
-    from uvf.planning.navigator import GlobalPlanner as GlobalPlanner
+    from uvf.planning.global_planner import GlobalPlanner as GlobalPlanner
+    from uvf.planning.global_planner import PlannedBody as PlannedBody
     from uvf.planning.pure_pursuit import PathTracker as PathTracker
-    from uvf.planning.search import CostToGo as CostToGo
-    from uvf.planning.search import astar as astar
+    from uvf.planning.search.grid_search import GridSearch as GridSearch
 
 OFFERED = {
-    "astar": "uvf.planning.search:astar",
-    "CostToGo": "uvf.planning.search:CostToGo",
-    "make_costmap": "uvf.planning.costmap:make_costmap",
-    "Costmap": "uvf.planning.costmap:Costmap",
-    "RobotFootprint": "uvf.planning.costmap:RobotFootprint",
-    "GlobalPlanner": "uvf.planning.navigator:GlobalPlanner",
+    "GridSearch": "uvf.planning.search.grid_search:GridSearch",
+    "make_costmap": "uvf.planning.costmap.costmap:make_costmap",
+    "Costmap": "uvf.planning.costmap.costmap:Costmap",
+    "cost_factors": "uvf.planning.costmap.inflation:cost_factors",
+    "Inflation": "uvf.planning.costmap.inflation:Inflation",
+    "RobotFootprint": "uvf.planning.costmap.footprint:RobotFootprint",
+    "GlobalPlanner": "uvf.planning.global_planner:GlobalPlanner",
+    "PlannedBody": "uvf.planning.global_planner:PlannedBody",
     "PathTracker": "uvf.planning.pure_pursuit:PathTracker",
     "Explorer": "uvf.planning.exploration:Explorer",
 }

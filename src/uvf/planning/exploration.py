@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.grids import distance_field
-from uvf.planning.costmap import Costmap
+from uvf.planning.costmap.costmap import Costmap
 from uvf.planning.frontiers import FrontierWeights, frontier_mask, frontiers
-from uvf.planning.search import CostToGo
+from uvf.planning.search.grid_search import CostToGo
 
 Mask = NDArray[np.bool_]
 Point = tuple[float, float]
@@ -16,6 +16,8 @@ Point = tuple[float, float]
 SHUN_RADIUS = 0.5  # m
 SHUN_TIME = 30.0  # s, tripled with each further time at the same place
 STILL_THERE = 0.7  # m from the goal within which the frontier must remain
+EASY = 32
+"""Values below are at ease: far enough from every obstacle to stand there."""
 PATROL_REST = 1.5  # m, when no place is farther from those visited, the round begins again
 
 
@@ -71,7 +73,7 @@ class Explorer:
         self.goal = None
 
     def _shunned_mask(self, t: float, costs: Costmap) -> Mask:
-        mask = np.zeros(costs.cost.shape, dtype=np.bool_)
+        mask = np.zeros(costs.values.shape, dtype=np.bool_)
         for place in self._shunned:
             if place.until > t:
                 mask |= disc(costs, place.point, SHUN_RADIUS + self.taste.view)
@@ -94,7 +96,7 @@ class Patrol:
         """The goal [m, map frame] to go to; kept until ``reached`` or until no path leads there."""
         if self.goal is not None and costs.holds(cell := costs.cell(*self.goal)) and np.isfinite(ways.cost[cell]):
             return self.goal
-        easy = np.isfinite(ways.cost) & (costs.cost >= 0.0) & (costs.cost < 1.5)
+        easy = np.isfinite(ways.cost) & (costs.values < EASY)
         if not easy.any():
             return None
         distance = np.where(easy, self._distance([*self._visited, here], costs), -1.0)
@@ -113,7 +115,7 @@ class Patrol:
         self.goal = None
 
     def _distance(self, points: list[Point], costs: Costmap) -> NDArray[np.float64]:
-        marks = np.zeros(costs.cost.shape, dtype=np.bool_)
+        marks = np.zeros(costs.values.shape, dtype=np.bool_)
         for point in points:
             if costs.holds(costs.cell(*point)):
                 marks[costs.cell(*point)] = True
@@ -122,7 +124,7 @@ class Patrol:
 
 def disc(costs: Costmap, centre: Point, radius: float) -> Mask:
     """Mask (rows, columns) of the cells whose centres lie within ``radius`` [m] of a point [m, map frame]."""
-    rows, columns = costs.cost.shape
+    rows, columns = costs.values.shape
     x = costs.origin[0] + (np.arange(columns) + 0.5) * costs.resolution - centre[0]
     y = costs.origin[1] + (np.arange(rows) + 0.5) * costs.resolution - centre[1]
     inside: Mask = y[:, None] ** 2 + x[None, :] ** 2 <= radius * radius

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from uvf.maths.grids import distance_field
-from uvf.planning.costmap import Costmap
+from uvf.planning.costmap.costmap import Costmap
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
-from uvf.planning.costmap import Costmap
+from uvf.planning.costmap.costmap import Costmap
 
 Floats = NDArray[np.float64]
 
@@ -25,11 +25,11 @@ def resample(points: Floats, spacing: float = SPACING) -> Floats:
 
 
 @compiled
-def _relax(points: Floats, clearance: Floats, frame: tuple[float, float, float], least: float) -> Floats:
-    """Gradient smoothing (Thrun 2012): each point towards its neighbours' middle, unless that comes too near."""
+def _relax(points: Floats, distance: Floats, frame: tuple[float, float, float], least: float) -> Floats:
+    """Gradient smoothing (Thrun 2012): each point towards its neighbours' middle, unless it is nearer than ``least`` [cells] there."""
     x0, y0, resolution = frame
     smooth = points.copy()
-    rows, columns = clearance.shape
+    rows, columns = distance.shape
     for _ in range(ROUNDS):
         for i in range(1, points.shape[0] - 1):
             x = smooth[i, 0] + FIDELITY * (points[i, 0] - smooth[i, 0])
@@ -37,7 +37,7 @@ def _relax(points: Floats, clearance: Floats, frame: tuple[float, float, float],
             x += TENSION * (0.5 * (smooth[i - 1, 0] + smooth[i + 1, 0]) - x)
             y += TENSION * (0.5 * (smooth[i - 1, 1] + smooth[i + 1, 1]) - y)
             r, c = int(np.floor((y - y0) / resolution)), int(np.floor((x - x0) / resolution))
-            if 0 <= r < rows and 0 <= c < columns and clearance[r, c] >= least:
+            if 0 <= r < rows and 0 <= c < columns and distance[r, c] >= least:
                 smooth[i, 0], smooth[i, 1] = x, y
     return smooth
 
@@ -47,7 +47,7 @@ def smoothed(points: Floats, costs: Costmap, least: float) -> Floats:
 
     least: [m], no point is moved to where its clearance is less.
     """
-    return _relax(resample(points), costs.clearance, (*costs.origin, costs.resolution), least)
+    return _relax(resample(points), costs.distance, (*costs.origin, costs.resolution), least / costs.resolution + 0.5)
 
 
 def length(points: Floats) -> float:

@@ -21,8 +21,8 @@ from services.planner.planner_service import PlannerParams, PlannerService
 from tests.runtime.stepping import recall, stale, stepped
 from tests.services.live_params import all_settable_are_read
 from tests.services.planner.plans import room
-from uvf.planning import navigator
-from uvf.planning.search import CostToGo
+from uvf.planning import global_planner
+from uvf.planning.search.grid_search import GridSearch
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose
 
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
@@ -202,11 +202,11 @@ def test_a_flood_of_goals_costs_one_search_and_the_last_good_one_counts():
     flood = [asked(0.5 + 0.01 * i, 1.5) for i in range(255)] + [asked(0.07, 1.0)]
     searches = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(navigator, "CostToGo", lambda cost, cell: searches.append(cell) or CostToGo(cost, cell))
+        patch.setattr(global_planner, "GridSearch", lambda values, factors: searches.append(values) or GridSearch(values, factors))
         bench.step(goal=flood)
     replies = bench.said["goal"]
     assert [r.accepted for r in replies] == [True] * 255 + [False]
-    assert len(searches) <= 1
+    assert len(searches) <= 2  # one for all refusals, one for the path
     assert bench.events == ["goal (8.5, 23.0)", "job: goal"]
     assert bench.said["path"].poses[-1].position.x == pytest.approx(world(3.04, 1.5)[0])
 
@@ -317,23 +317,29 @@ def test_every_parameter_of_the_planner_is_read_while_running():
         bench.step(40)
 
 
-@pytest.mark.parametrize("change", [{"inflation_radius": 0.9, "cost_scaling_factor": 50.0}, {"margin": 0.4}])
+@pytest.mark.parametrize("change", [{"inflation_radius": 1.5, "cost_scaling_factor": 3.0, "cost_travel_multiplier": 30.0}, {"margin": 0.6}])
 def test_the_path_keeps_farther_from_walls_when_that_is_set_while_driving(change):
     bench = Bench()
     cells = room(4.0, 3.0)
     cells[4:20, 38:42] = 100
     bench.grid = occupancy_grid(cells, 0.05, 0.0, 0.0, "v/map", 0.0)
     bench.step(goal=[asked(3.0, 1.0)]).step()
-    before = bench.said["nav_status"].distance_left
+    block = np.array(world(2.0, 1.0))  # the middle of its upper side
+
+    def nearest():
+        return min(np.hypot(*(np.array((pose.position.x, pose.position.y)) - block)) for pose in bench.said["path"].poses)
+
+    before = nearest()
     bench.service.params = PlannerParams(**change)
-    assert bench.step().said["nav_status"].distance_left > before + 0.1
+    bench.step()
+    assert nearest() > before + 0.08
 
 
 def test_a_comfort_below_the_radius_does_not_spoil_the_costs():
     bench = Bench().step(goal=[asked(3.0, 2.0)]).step()
     bench.service.params = PlannerParams(inflation_radius=0.13)
     assert bench.step(2).state == NavStatus.DRIVING
-    assert np.isfinite(bench.service._navigator.costs.cost).all()
+    assert np.isfinite(bench.service._navigator.costs.distance).all()
 
 
 @pytest.mark.parametrize(("here", "why"), [((0.5, 1.0), "on ground that is not mapped"), ((-3.0, 1.0), "outside its map")])

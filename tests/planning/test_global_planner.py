@@ -5,11 +5,13 @@ import pytest
 
 from schemas.limits import LENGTHS
 from tests.services.planner.plans import room
-from uvf.planning.costmap import RobotFootprint
-from uvf.planning.navigator import MOST_CELLS, GlobalPlanner, PlannedPath
+from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.costmap.inflation import Inflation
+from uvf.planning.global_planner import MOST_CELLS, GlobalPlanner, PlannedBody, PlannedPath
 from uvf.planning.smoothing import length
 
-BODY = RobotFootprint(radius=0.15, inflation_radius=0.35, cost_scaling_factor=5.0)
+RADIUS = 0.15
+BODY = PlannedBody(RobotFootprint.circle(RADIUS), Inflation(0.35, 6.0), 5.0)
 
 
 def house(door=True):
@@ -32,7 +34,7 @@ def test_goes_through_the_door():
     path = made.plan((0.6, 0.6), (3.4, 0.6)).path
     crossing = path[np.argmin(np.abs(path[:, 0] - 2.05))]
     assert 2.1 < crossing[1] < 2.7
-    assert all(made.costs.clearance[made.costs.cell(x, y)] >= BODY.radius for x, y in path)
+    assert all(made.costs.clearance[made.costs.cell(x, y)] >= RADIUS for x, y in path)
     assert path[0] == pytest.approx((0.6, 0.6))
     assert path[-1] == pytest.approx((3.4, 0.6))
 

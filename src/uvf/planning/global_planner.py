@@ -6,18 +6,11 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.planning.costmap import (
-    Costmap,
-    Frame,
-    RobotFootprint,
-    ground_below,
-    leads_away,
-    make_costmap,
-    widened,
-    with_own_ground,
-    with_way_out,
-)
-from uvf.planning.search import Cell, CostToGo, astar
+from uvf.planning.costmap.costmap import Costmap, Frame, make_costmap
+from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.costmap.inflation import INSCRIBED, Inflation, cost_factors
+from uvf.planning.costmap.own_ground import LEAVING, ground_below, leads_away, standing_radius, widened, with_own_ground, with_way_out
+from uvf.planning.search.grid_search import Cell, CostToGo, GridSearch
 from uvf.planning.smoothing import SPACING, length, smoothed
 
 Floats = NDArray[np.float64]
@@ -26,6 +19,8 @@ Point = tuple[float, float]
 WAY_OUT = 0.3  # m about the vehicle within which it may leave the room it should keep from obstacles
 UNKNOWN_COST = 3.0
 """Factor on the cost of unknown ground for goals that may lie behind it."""
+LEAVING_COST = 30.0
+"""Factor on the cost of ground within the inscribed radius of an obstacle, when it has to be left."""
 
 MOST_CELLS = 8_000_000
 """Of a map, 140 x 140 m in cells of 5 cm: a step that plans over it takes seconds, and one of 6 s is ended."""
@@ -47,25 +42,35 @@ class PlannedPath:
     reason: str = ""
 
 
+@dataclass(frozen=True)
+class PlannedBody:
+    """The vehicle that paths are planned for, and how they are kept from obstacles."""
+
+    footprint: RobotFootprint
+    inflation: Inflation
+    cost_travel_multiplier: float = 2.0
+    """How much longer a path may be, 1 + this times, to stay out of the highest cost (Nav2's Smac planners)."""
+    sensor_offset: float = 0.0  # m from the centre to the lidar that draws the map
+
+
 class GlobalPlanner:
     """Plans on the newest map; all points are (x, y) [m, map frame]."""
 
-    def __init__(self, body: RobotFootprint) -> None:
+    def __init__(self, body: PlannedBody) -> None:
         self._body = body
         self._cells: NDArray[np.int8] | None = None
-        self._unknown_costmap: Costmap | None = None
         self._ways: tuple[Cell, CostToGo] | None = None
         self.costs: Costmap | None = None
         self.missing = "there is no map yet"
         """Why there are no costs, and no ways, while there are none."""
 
-    def fit(self, body: RobotFootprint) -> bool:
+    def fit(self, body: PlannedBody) -> bool:
         """Plans for another body from now on; whether that changes anything."""
         if body == self._body:
             return False
         self._body = body
         if self._cells is not None and self.costs is not None:
-            self.see(self._cells, (self.costs.resolution, self.costs.origin))
+            self.see(self._cells, self.costs.frame)
         return True
 
     def see(self, cells: NDArray[np.int8], frame: Frame) -> None:
@@ -73,21 +78,20 @@ class GlobalPlanner:
 
         ``frame``: resolution [m] and origin [m]. On a map of more than ``MOST_CELLS`` cells nothing is planned.
         """
-        self._unknown_costmap = None
         self._ways = None
         if cells.size > MOST_CELLS:
             self._cells, self.costs = None, None
             self.missing = f"{TOO_LARGE}: {cells.size} cells, {MOST_CELLS} at most"
             return
         self._cells = cells
-        self.costs = make_costmap(cells, frame, self._body)
+        self.costs = make_costmap(cells, frame, self._body.footprint, self._body.inflation)
 
     def stand(self, here: Point) -> bool:
         """Widens the map by unknown ground where the vehicle at ``here`` [m] stands across its edge; whether that was so."""
         costs = self.costs
         if self._cells is None or costs is None or costs.holds(costs.cell(*here)):
             return False
-        wider = widened(self._cells, (costs.resolution, costs.origin), self._body, here)
+        wider = widened(self._cells, costs.frame, self._standing(costs), here)
         if wider is None:
             return False
         self.see(*wider)
@@ -101,17 +105,17 @@ class GlobalPlanner:
         if ways is None:
             return OUTSIDE
         cell = costs.cell(*start)
-        window, covered = ground_below(costs, cell, self._body)
-        reached = np.isfinite(ways.cost) & (costs.cost >= 0.0)
+        window, covered = ground_below(costs, cell, self._standing(costs))
+        reached = np.isfinite(ways.cost) & costs.passable
         reached[window] &= ~covered
         if reached.any():
             return ""
         if costs.unknown[cell]:
             return UNMAPPED
-        if costs.cost[cell] >= 0.0:
+        if costs.values[cell] < INSCRIBED:
             return "no way leads away from where the vehicle stands; drive it out by hand"
-        room = max(costs.clearance[cell], 0.0)
-        return f"the vehicle is {room:.2f} m from an obstacle, {self._body.radius:.2f} m are needed; drive it out by hand"
+        room = max(costs.clearance_at(cell), 0.0)
+        return f"the vehicle is {room:.2f} m from an obstacle, {self._needed:.2f} m are needed; drive it out by hand"
 
     def ways(self, start: Point) -> CostToGo | None:
         """Cost to go from ``start``, computed once per cell and map; None without a map or outside it."""
@@ -119,7 +123,7 @@ class GlobalPlanner:
             return None
         cell = self.costs.cell(*start)
         if self._ways is None or self._ways[0] != cell:
-            self._ways = cell, CostToGo(self._leaving(self.costs, cell).cost, cell)
+            self._ways = cell, GridSearch(self._leaving(self.costs, cell).values, self._factors(False)).cost_to_go(cell)
         return self._ways[1]
 
     def refusal(self, start: Point, goal: Point) -> str:
@@ -134,10 +138,10 @@ class GlobalPlanner:
             return "the goal lies outside the map"
         if costs.unknown[cell]:
             return "the goal lies on ground not seen yet"
-        if costs.clearance[cell] <= 0.0 or not costs.free[cell]:
+        if not costs.free[cell]:
             return "the goal lies in an obstacle"
-        if costs.cost[cell] < 0.0:
-            return f"the goal is {costs.clearance[cell]:.2f} m from an obstacle, {self._body.radius:.2f} m are needed"
+        if costs.values[cell] >= INSCRIBED:
+            return f"the goal is {costs.clearance_at(cell):.2f} m from an obstacle, {self._needed:.2f} m are needed"
         ways = self.ways(start)
         if ways is None:
             return OUTSIDE
@@ -152,7 +156,7 @@ class GlobalPlanner:
 
         allow_unknown: unknown ground may be crossed, and the goal may lie beyond the map: its nearest cell is taken.
         """
-        known = self._costs(allow_unknown)
+        known = self.costs
         if known is None:
             return PlannedPath(None, self.missing)
         if not _is_place(goal):
@@ -163,31 +167,37 @@ class GlobalPlanner:
         there = known.cell(*goal)
         if not known.holds(there) and not allow_unknown:
             return PlannedPath(None, "the goal lies outside the map")
-        rows, columns = known.cost.shape
+        rows, columns = known.values.shape
         there = (min(max(there[0], 0), rows - 1), min(max(there[1], 0), columns - 1))
-        found = astar(self._leaving(known, here).cost, here, there)
+        found = GridSearch(self._leaving(known, here).values, self._factors(allow_unknown)).astar(here, there)
         if found is None:
             return PlannedPath(None, self.shut_in(start) or NO_WAY)
-        points = known.points(found[0])
+        points = known.points(found.cells)
         points[0] = start
         if known.holds(known.cell(*goal)):
             points = np.vstack((points[:-1], goal)) if len(points) > 1 else np.array((start, goal))
         too_far = _too_far(points)
-        return PlannedPath(None, too_far) if too_far else PlannedPath(smoothed(points, known, self._body.radius))
+        return PlannedPath(None, too_far) if too_far else PlannedPath(smoothed(points, known, self._needed))
 
     def _leaving(self, costs: Costmap, start: Cell) -> Costmap:
         """The vehicle may leave a place that is too near to an obstacle, and drive off over unseen ground that it covers itself."""
-        opened = with_way_out(costs, start, WAY_OUT)
-        if leads_away(opened, start, self._body):
+        opened, radius = with_way_out(costs, start, WAY_OUT), self._standing(costs)
+        if leads_away(opened, start, radius):
             return opened
-        return with_way_out(with_own_ground(costs, start, self._body), start, WAY_OUT)
+        return with_way_out(with_own_ground(costs, start, radius, self._body.inflation), start, WAY_OUT)
 
-    def _costs(self, allow_unknown: bool) -> Costmap | None:
-        if not allow_unknown or self.costs is None or self._cells is None:
-            return self.costs
-        if self._unknown_costmap is None:
-            self._unknown_costmap = make_costmap(self._cells, (self.costs.resolution, self.costs.origin), self._body, UNKNOWN_COST)
-        return self._unknown_costmap
+    @property
+    def _needed(self) -> float:
+        """Distance [m] that the centre keeps from every obstacle."""
+        return self._body.footprint.inscribed_radius
+
+    def _standing(self, costs: Costmap) -> float:
+        return standing_radius(self._body.footprint.circumscribed_radius, self._body.sensor_offset, costs.resolution)
+
+    def _factors(self, allow_unknown: bool) -> Floats:
+        factors = cost_factors(self._body.cost_travel_multiplier, UNKNOWN_COST if allow_unknown else -1.0)
+        factors[LEAVING] = LEAVING_COST
+        return factors
 
 
 def _too_far(points: Floats) -> str:

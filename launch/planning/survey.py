@@ -1,0 +1,186 @@
+"""``uvf plan survey``: an area, a vehicle and a camera made into a mission file."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from launch.vehicles.inspection import folder_of
+from uvf.guidance.corners import CornerLimits
+from uvf.maths.geodesy import LocalTangent
+from uvf.models.importing.areas import read_areas
+from uvf.models.mission.file import Waypoint
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import VehicleFile, load_vehicle
+from uvf.models.vehicle.flight_params import AirParams
+from uvf.models.world.file import WorldFile, load_world
+from uvf.models.world.terrain import relief
+from uvf.models.yaml_data import BadInput, convert
+from uvf.planning.coverage.camera import SurveyCamera
+from uvf.planning.coverage.field import CoverageField, join_fields, make_field
+from uvf.planning.coverage.ground_speed import GroundSpeed
+from uvf.planning.coverage.mission import SurveyFlight, survey_mission
+from uvf.planning.coverage.plan import CoveragePlan
+from uvf.planning.coverage.planner import plan_coverage
+from uvf.planning.coverage.task import CoverageTask
+from uvf.planning.coverage.vehicles import SurveyAircraft
+
+SETTLING = 1.5  # s, level on the swath's line before it begins
+LEAVING = 0.2  # s, straight on behind it
+APPROACH = 6.0  # s, from where the flight begins to the first waypoint
+SPARE = 1.15, 60.0  # of the planned time, s: how long the run may last
+
+
+@dataclass(frozen=True)
+class SurveyWishes:
+    """What the command line asks for. Distances in m, angles in rad; None: from the camera, or the best.
+
+    at: where the middle of the area is put in the world; None: where it lies on Earth.
+    """
+
+    area: Path
+    height: float
+    vehicle: str
+    world: str
+    wind: tuple[float, float]
+    camera: SurveyCamera | None
+    overlaps: tuple[float, float]
+    spacing: float | None
+    trigger: float | None
+    airspeed: float | None
+    direction: float | None
+    at: tuple[float, float] | None
+    seed: int
+
+
+@dataclass(frozen=True)
+class Survey:
+    """A planned survey: the plan, how it is flown, its mission items, and what it was asked for."""
+
+    wishes: SurveyWishes
+    plan: CoveragePlan
+    flight: SurveyFlight
+    items: list[Waypoint]
+    airspeed: float
+
+    def lines(self) -> list[str]:
+        """What has been planned, a line each."""
+        plan = self.plan
+        return [
+            *plan.field.notes,
+            f"{plan.field.area / 1e4:.2f} ha, {len(plan.swaths)} swaths {plan.width:.1f} m apart, "
+            f"pictures every {self.flight.trigger:.1f} m from {self.flight.height:.0f} m",
+            f"swaths {plan.swath_length:.0f} m, {plan.swath_ratio:.3f} of the least; path {plan.length:.0f} m, {plan.length_ratio:.2f}",
+            f"covered {100 * plan.covered:.2f} % within half a spacing; {plan.turns} turns; {plan.time:.0f} s",
+        ]
+
+    def mission_text(self) -> str:
+        """The mission file."""
+        wishes, first = self.wishes, self.items[self.items[0].kind == "speed"]
+        course = float(self.plan.segments[0, 2])
+        back = APPROACH * self.airspeed
+        x, y = first.x - back * math.cos(course), first.y - back * math.sin(course)
+        wind = f"wind: {{steady: [{wishes.wind[0]:g}, {wishes.wind[1]:g}, 0.0]}}\n" if any(wishes.wind) else ""
+        legs = sum(item.kind == "waypoint" for item in self.items)
+        rows = "\n".join(f"        - {_row(item)}" for item in self.items)
+        return (
+            f"about: Survey of {wishes.area.name.replace(':', ' ')} from {self.flight.height:g} m, {len(self.plan.swaths)} swaths.\n"
+            f"world: {wishes.world}\nseed: {wishes.seed}\nduration: {SPARE[0] * self.plan.time + SPARE[1]:.0f}.0\n{wind}\n"
+            f"vehicles:\n  {VEHICLE}:\n    model: {Path(wishes.vehicle).name}\n    system_id: 1\n"
+            f"    start: {{x: {x:.1f}, y: {y:.1f}, z: {self.flight.height:.1f}, yaw: {course:.4f}, speed: {self.airspeed:g}}}\n"
+            f"    job:\n      mission:\n{rows}\n\n"
+            f"criteria:\n  - {{vehicle: {VEHICLE}, measure: legs, at_least: {legs}}}\n"
+            f"  - {{vehicle: {VEHICLE}, measure: waypoint_error, at_most: {WAYPOINT_ERROR}}}\n"
+        )
+
+
+VEHICLE = "surveyor"
+WAYPOINT_ERROR = 5.0  # m
+
+
+def plan_survey(wishes: SurveyWishes) -> Survey:
+    """The survey that is asked for. Raises BadInput."""
+    folder = folder_of(wishes.vehicle, ROOT / "vehicles")
+    file = load_vehicle(folder.parent, folder.name)
+    if file.air is None:
+        raise BadInput(f"vehicle '{wishes.vehicle}' is no aircraft; a survey from the air needs one, such as milvus")
+    params = convert(file.params.get("autopilot_air", {}), AirParams, str(folder / "vehicle.yaml"), ("params", "autopilot_air"))
+    world = load_world(ROOT / "worlds", wishes.world)
+    try:
+        return _planned(wishes, file, params, world)
+    except ValueError as error:
+        raise BadInput(f"{wishes.area}: {error}") from error
+
+
+def _planned(wishes: SurveyWishes, file: VehicleFile, params: AirParams, world: WorldFile) -> Survey:
+    field = _field(wishes, world)
+    camera = wishes.camera or _own_camera(file)
+    width = wishes.spacing if wishes.spacing is not None else _of(camera).spacing(wishes.height, wishes.overlaps[0])
+    trigger = wishes.trigger if wishes.trigger is not None else _of(camera).trigger_distance(wishes.height, wishes.overlaps[1])
+    airspeed = wishes.airspeed or params.trim_airspeed
+    if not params.min_airspeed <= airspeed <= params.max_airspeed:
+        raise BadInput(f"an airspeed of {airspeed:g} m/s; {wishes.vehicle} flies {params.min_airspeed:g} to {params.max_airspeed:g} m/s")
+    turns = CornerLimits(airspeed, (wishes.wind[1], wishes.wind[0]), params.turn_bank)
+    fastest = airspeed + math.hypot(*wishes.wind)
+    leads = SETTLING * fastest, LEAVING * fastest
+    aircraft = SurveyAircraft(GroundSpeed(airspeed, wishes.wind), turns.radius, leads[0] + turns.ramp / 2, leads[1] + turns.ramp / 2)
+    plan = plan_coverage(CoverageTask(field, width, direction=wishes.direction, seed=wishes.seed), aircraft)
+    if len(plan.swaths) == 0:
+        raise BadInput(f"{wishes.area}: nothing of it is worth a swath {width:.1f} m wide; give a smaller spacing")
+    flight = SurveyFlight(wishes.height + _ground(field, world), trigger, wishes.airspeed or 0.0, *leads)
+    return Survey(wishes, plan, flight, survey_mission(plan, flight), airspeed)
+
+
+def _field(wishes: SurveyWishes, world: WorldFile) -> CoverageField:
+    """All areas of the file as one field in the world's frame."""
+    areas = read_areas(wishes.area)
+    origin = LocalTangent.from_degrees(world.origin.latitude, world.origin.longitude, world.origin.altitude)
+    if wishes.at is not None and areas[0].in_degrees:
+        longitude, latitude = areas[0].middle
+        origin = LocalTangent.from_degrees(latitude, longitude, 0.0)
+    rings = [area.rings_about(origin) for area in areas]
+    corners = np.concatenate([outline for outline, _ in rings])
+    shift = np.zeros(2)
+    if wishes.at is not None:
+        shift = np.array(wishes.at) - (corners.min(axis=0) + corners.max(axis=0)) / 2
+    elif float(np.abs(corners).max()) > FARTHEST:
+        away = float(np.abs(corners).max()) / 1000
+        raise BadInput(f"{wishes.area}: lies {away:.0f} km from the origin of world '{wishes.world}'; '--at 0 0' puts it there")
+    return join_fields([make_field(outline + shift, [hole + shift for hole in holes]) for outline, holes in rings])
+
+
+FARTHEST = 50_000.0  # m from the world's origin, in its tangent plane
+
+
+def _own_camera(file: VehicleFile) -> SurveyCamera | None:
+    """The vehicle's gimbal or camera, taken as looking straight down."""
+    found = file.sensors.gimbal or file.sensors.camera
+    if found is None:
+        return None
+    return SurveyCamera(found.fov, 2 * math.atan(math.tan(found.fov / 2) * found.height / found.width))
+
+
+def _of(camera: SurveyCamera | None) -> SurveyCamera:
+    if camera is None:
+        raise BadInput("the vehicle has no camera: give --fov, --sensor and --focal, or --spacing and --trigger")
+    return camera
+
+
+def _ground(field: CoverageField, world: WorldFile) -> float:
+    """The highest ground [m, world frame] below the field, looked at on a grid of its bounding box."""
+    terrain = relief(world)
+    if terrain is None:
+        return 0.0
+    x0, y0, x1, y1 = field.shape.bounds
+    heights, _ = terrain.at(*np.meshgrid(np.linspace(x0, x1, 200), np.linspace(y0, y1, 200)))
+    return float(heights.max())
+
+
+def _row(item: Waypoint) -> str:
+    if item.kind == "trigger_distance":
+        return f"{{kind: trigger_distance, distance: {item.distance:g}}}"
+    if item.kind == "speed":
+        return f"{{kind: speed, speed: {item.speed:g}}}"
+    course = "" if item.course is None else f", course: {item.course:.5f}"
+    return f"{{x: {item.x:.2f}, y: {item.y:.2f}, z: {item.z:.1f}{course}}}"

@@ -1,0 +1,154 @@
+"""A rolling window of obstacles: marked where a sensor's beams end, cleared where they pass, forgotten where nothing renews them.
+
+Any range sensor speaks the same way: where it is, where its beams end, and which of them ended at something. A lidar gives one end a
+beam, a depth camera its points between the heights that matter, a sonar the arc of its cone, a bumper the place that was touched.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.compiled import compiled
+from uvf.planning.costmap.costmap import Costmap
+from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.costmap.inflation import FREE_SPACE, LETHAL, NO_INFORMATION, Inflation, inflate
+
+Bytes = NDArray[np.uint8]
+Floats = NDArray[np.float64]
+Times = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Point = tuple[float, float]
+
+
+@compiled
+def clear_beams(cells: Bytes, frame: tuple[float, float, float], eye: tuple[float, float], ends: Floats) -> None:
+    """Sets the cells that beams pass to free, without those in which they end.
+
+    cells: (rows, columns); frame: (x, y of cell [0, 0]'s corner, resolution) [m]; eye, ends (n, 2): [m], may lie outside.
+    Bresenham's line from the eye's cell to the end's; what lies off the grid is passed over.
+    """
+    rows, columns = cells.shape
+    r0, c0 = int(np.floor((eye[1] - frame[1]) / frame[2])), int(np.floor((eye[0] - frame[0]) / frame[2]))
+    for k in range(ends.shape[0]):
+        r1, c1 = int(np.floor((ends[k, 1] - frame[1]) / frame[2])), int(np.floor((ends[k, 0] - frame[0]) / frame[2]))
+        down, across = abs(r1 - r0), abs(c1 - c0)
+        step_r, step_c = (1 if r1 > r0 else -1), (1 if c1 > c0 else -1)
+        error, r, c = across - down, r0, c0
+        while r != r1 or c != c1:
+            if 0 <= r < rows and 0 <= c < columns:
+                cells[r, c] = FREE_SPACE
+            twice = 2 * error
+            if twice > -down:
+                error -= down
+                c += step_c
+            if twice < across:
+                error += across
+                r += step_r
+
+
+@compiled
+def mark_ends(cells: Bytes, seen: Times, frame: tuple[float, float, float], ends: Floats, t: float) -> None:
+    """Sets the cells of the points (n, 2) [m] to lethal, seen at ``t`` [s]; points off the grid are passed over."""
+    rows, columns = cells.shape
+    for k in range(ends.shape[0]):
+        r, c = int(np.floor((ends[k, 1] - frame[1]) / frame[2])), int(np.floor((ends[k, 0] - frame[0]) / frame[2]))
+        if 0 <= r < rows and 0 <= c < columns:
+            cells[r, c] = LETHAL
+            seen[r, c] = t
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What one sensor saw at ``t`` [s]: from ``eye`` (x, y) [m], beams to ``ends`` (n, 2) [m], all in the window's frame."""
+
+    t: float
+    eye: Point
+    ends: Floats
+    hits: Mask
+    """(n,) whether the beam ended at something; else it is free up to its end and beyond nothing is known."""
+
+
+class ObstacleLayer:
+    """Obstacles in a square window that moves with the vehicle, in a frame that does not jump (odom) or in the map's.
+
+    size: side of the window [m]; resolution [m]; obstacle_lifetime: time [s] after which an obstacle that no beam has touched again is
+    forgotten, so that nothing stays for ever where the sensors do not look.
+    """
+
+    def __init__(self, size: float, resolution: float, obstacle_lifetime: float = np.inf) -> None:
+        if not (np.isfinite(size) and 0.0 < resolution < size):
+            raise ValueError(f"a window of {size} m in cells of {resolution} m; both must be positive, the cells smaller")
+        n = int(np.ceil(size / resolution))
+        self.resolution, self.obstacle_lifetime = resolution, obstacle_lifetime
+        self.cells: Bytes = np.full((n, n), NO_INFORMATION, dtype=np.uint8)
+        self._seen = np.zeros((n, n))
+        self._corner: tuple[int, int] | None = None  # row, column of cell [0, 0] in a grid that covers the plane
+
+    @property
+    def origin(self) -> Point:
+        """(x, y) [m] of the corner of cell [0, 0]."""
+        row, column = self._corner or (0, 0)
+        return column * self.resolution, row * self.resolution
+
+    def recentre(self, centre: Point) -> None:
+        """Moves the window so that ``centre`` [m] lies in its middle; what it uncovers is unknown."""
+        n = len(self.cells)
+        row, column = (int(np.floor(v / self.resolution)) - n // 2 for v in (centre[1], centre[0]))
+        if self._corner is None or self._corner == (row, column):
+            self._corner = row, column
+            return
+        down, across = row - self._corner[0], column - self._corner[1]
+        self._corner = row, column
+        for array, empty in ((self.cells, NO_INFORMATION), (self._seen, 0.0)):
+            _shift(array, down, across, empty)
+
+    def observe(self, seen: Observation) -> None:
+        """Clears along the beams and marks their ends; what is not finite is left out."""
+        whole = np.isfinite(seen.ends).all(axis=1)
+        frame = (*self.origin, self.resolution)
+        clear_beams(self.cells, frame, seen.eye, seen.ends[whole])
+        mark_ends(self.cells, self._seen, frame, seen.ends[whole & seen.hits], seen.t)
+
+    def forget(self, t: float) -> None:
+        """Frees obstacles that were last seen longer ago than ``obstacle_lifetime`` at ``t`` [s]."""
+        if np.isfinite(self.obstacle_lifetime):
+            self.cells[(self.cells == LETHAL) & (self._seen < t - self.obstacle_lifetime)] = FREE_SPACE
+
+    def clear(self, beyond: float = 0.0, centre: Point | None = None) -> None:
+        """Forgets everything farther than ``beyond`` [m] from ``centre`` [m]: it is unknown again (the resets of move_base)."""
+        if centre is None or beyond <= 0.0:
+            self.cells[:] = NO_INFORMATION
+            return
+        n, (x, y) = len(self.cells), self.origin
+        at = (np.arange(n) + 0.5) * self.resolution
+        self.cells[np.hypot((at + y - centre[1])[:, None], at + x - centre[0]) > beyond] = NO_INFORMATION
+
+    def costmap(self, footprint: RobotFootprint, inflation: Inflation, size: float | None = None) -> Costmap:
+        """The window, or its middle of ``size`` [m], as a costmap.
+
+        No half cell is added to the footprint: a beam's end is known better than its cell.
+        """
+        n = len(self.cells)
+        cut = 0 if size is None else max((n - int(np.ceil(size / self.resolution))) // 2, 0)
+        cells = np.ascontiguousarray(self.cells[cut : n - cut, cut : n - cut])
+        values, distance = inflate(cells, self.resolution, footprint.inscribed_radius, inflation)
+        origin = (self.origin[0] + cut * self.resolution, self.origin[1] + cut * self.resolution)
+        return Costmap(self.resolution, origin, footprint, values, cells == FREE_SPACE, cells == NO_INFORMATION, distance)
+
+
+def _shift(array: NDArray[np.generic], down: int, across: int, empty: float) -> None:
+    """Moves the contents by so many rows and columns towards [0, 0], in place."""
+    n = len(array)
+    if abs(down) >= n or abs(across) >= n:
+        array[:] = empty
+        return
+    to_rows, from_rows = _slices(down, n)
+    to_columns, from_columns = _slices(across, n)
+    kept = array[from_rows, from_columns].copy()
+    array[:] = empty
+    array[to_rows, to_columns] = kept
+
+
+def _slices(shift: int, n: int) -> tuple[slice, slice]:
+    return (slice(0, n - shift), slice(shift, n)) if shift >= 0 else (slice(-shift, n), slice(0, n + shift))

@@ -1,0 +1,151 @@
+"""Drives along a path among what the sensors see: obstacle layer, moving things, a local planner, and the stop that nothing bypasses."""
+
+from dataclasses import dataclass, field
+from enum import Enum
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.se2 import Pose2, transform
+from uvf.planning.costmap.costmap import Costmap
+from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.costmap.inflation import Inflation, cost_factors
+from uvf.planning.costmap.obstacle_layer import Observation, ObstacleLayer
+from uvf.planning.costmap.own_ground import LEAVING, with_way_out
+from uvf.planning.local.planner import STOP, Limits, LocalPlanner, Situation, State, within
+from uvf.planning.local.swept_stop import safe_share
+from uvf.planning.local.window import WindowSettings, local_window
+from uvf.planning.moving.tracks import MovingObjects
+
+Floats = NDArray[np.float64]
+
+LEAVING_COST = 30.0
+"""Factor on the cost of ground within the inscribed radius of an obstacle, when it has to be left."""
+WAY_OUT = 0.3  # m about the vehicle within which it may leave such ground
+
+
+@dataclass(frozen=True)
+class ControllerSettings:
+    """How obstacles are remembered and kept away from."""
+
+    size: float = 8.0  # m, side of the window in which obstacles are remembered
+    resolution: float = 0.05  # m
+    obstacle_lifetime: float = 5.0  # s without being seen again
+    obstacle_range: float = 10.0  # m, farther ones are not marked
+    inflation: Inflation = field(default_factory=lambda: Inflation(0.55, 4.0))
+    cost_travel_multiplier: float = 4.0
+    margin: float = 0.02  # m round the footprint, for plans
+    stop_margin: float = 0.01  # m round the footprint, for the stop
+    window: WindowSettings = field(default_factory=WindowSettings)
+    period: float = 0.05  # s from one command to the next
+    delay: float = 0.05  # s from a measurement to the wheels
+    reaction: float = 0.1  # s from sight to braking
+    braking: float = 4.0  # m/s^2
+    angular_braking: float = 10.0  # rad/s^2
+
+
+class Drive(Enum):
+    """How a cycle went."""
+
+    DRIVING = "driving"
+    NO_PATH = "there is no path"
+    NO_VALID_CONTROL = "every velocity leads into an obstacle"
+    STOPPED = "stopped before an obstacle"
+
+
+@dataclass(frozen=True)
+class DriveResult:
+    """Velocity [m/s, rad/s] for now, and how it came about."""
+
+    speed: float
+    turn_rate: float
+    how: Drive
+
+
+class LocalController:
+    """One vehicle's; poses are in a frame that does not jump (odom), or one that seldom does (map)."""
+
+    def __init__(self, footprint: RobotFootprint, limits: Limits, planner: LocalPlanner, settings: ControllerSettings) -> None:
+        self.settings, self.limits = settings, limits
+        self.footprint = footprint
+        self.planner = planner
+        self.layer = ObstacleLayer(settings.size, settings.resolution, settings.obstacle_lifetime)
+        self.moving = MovingObjects()
+        self._plan_footprint = footprint.padded(settings.margin)
+        self._factors = cost_factors(settings.cost_travel_multiplier, 1.0)
+        self._factors[LEAVING] = LEAVING_COST
+        self._near: Floats = np.zeros((0, 2))
+        self._last = STOP
+
+    def see(self, t: float, pose: Pose2, eye: tuple[float, float], points: Floats, ranges: Floats) -> None:
+        """Takes a planar scan at ``t`` [s]: points (n, 2) [m, base frame] in the order of the beams, ranges (n,) [m], 0 = no return.
+
+        eye: (x, y) [m, base frame] of the sensor. A beam without return has its point where it would end at its farthest; it clears.
+        """
+        ends = transform(pose, points)
+        (x, y), *_ = transform(pose, np.array((eye,))).tolist()
+        self.layer.recentre((pose[0], pose[1]))
+        moves = self.moving.observe(t, (x, y), ends, ranges)
+        hits = (ranges > 0.0) & (ranges <= self.settings.obstacle_range) & ~moves
+        far = np.maximum(ranges, 1e-9) > self.settings.obstacle_range
+        if far.any():
+            share = np.where(far, self.settings.obstacle_range / np.maximum(ranges, 1e-9), 1.0)[:, None]
+            ends = np.array((x, y)) + (ends - np.array((x, y))) * share
+        self.layer.observe(Observation(t, (x, y), ends, hits))
+        self.layer.forget(t)
+        self._near = points[(ranges > 0.0) & (np.abs(points) <= self.settings.size / 2).all(axis=1)]
+
+    def costmap(self, size: float | None = None) -> Costmap:
+        """What is known round the vehicle, or its middle of ``size`` [m], for planning."""
+        return self.layer.costmap(self._plan_footprint, self.settings.inflation, size)
+
+    @property
+    def factors(self) -> Floats:
+        """(256,) cost factors [-] by value, unknown ground like free."""
+        return self._factors
+
+    def leaving(self, costs: Costmap, pose: Pose2) -> Costmap:
+        """The costmap in which the vehicle may leave a place that is too near to an obstacle."""
+        return with_way_out(costs, costs.cell(pose[0], pose[1]), WAY_OUT)
+
+    def drive(self, pose: Pose2, velocity: tuple[float, float], path: Floats) -> DriveResult:
+        """Velocity for now along ``path`` (n, 2) [m, the poses' frame]; velocity: measured [m/s, rad/s]."""
+        settings = self.settings
+        if len(path) == 0:
+            self._last = STOP
+            return DriveResult(*STOP, Drive.NO_PATH)
+        costs = self.leaving(self.costmap(settings.window.size + 1.0), pose)
+        grids = local_window(costs, (pose[0], pose[1]), path, self._factors, settings.window)
+        state = self._ahead(pose, velocity)
+        wanted = self.planner.command(Situation(state, grids, path, self.moving.moving()))
+        if wanted is None:
+            self._last = within(self.limits, state, STOP, settings.period)
+            return DriveResult(*self.made_safe(self._last, velocity), Drive.NO_VALID_CONTROL)
+        wanted = within(self.limits, state, wanted, settings.period)
+        self._last = self.made_safe(wanted, velocity)
+        stopped = self._last == STOP and wanted != STOP
+        return DriveResult(*self._last, Drive.STOPPED if stopped else Drive.DRIVING)
+
+    def made_safe(self, wanted: tuple[float, float], velocity: tuple[float, float]) -> tuple[float, float]:
+        """The wanted velocity, slowed so that the vehicle can stop before everything that the last scan shows.
+
+        velocity: the measured one [m/s, rad/s]; where it is the larger of the two, it counts.
+        """
+        s = self.settings
+        brake = (s.reaction, s.braking, s.angular_braking)
+        faster = tuple(m if abs(m) > abs(w) else w for w, m in zip(wanted, velocity, strict=True))
+        share = min(safe_share(self._near, v, self.footprint, s.stop_margin, brake) for v in (wanted, (faster[0], faster[1])))
+        return share * wanted[0], share * wanted[1]
+
+    def _ahead(self, pose: Pose2, velocity: tuple[float, float]) -> State:
+        """Where the vehicle will be, and how fast, when the command takes effect.
+
+        The last command counts as its velocity, as far as the measured one is near: measurements lag behind.
+        """
+        d, lag = self.settings.delay, 3 * self.settings.period
+        dv, dw = self.limits.acceleration * lag, self.limits.angular_acceleration * lag
+        v = min(max(self._last[0], velocity[0] - dv), velocity[0] + dv)
+        w = min(max(self._last[1], velocity[1] - dw), velocity[1] + dw)
+        middle = pose[2] + w * d / 2
+        return State(pose[0] + v * d * cos(middle), pose[1] + v * d * sin(middle), pose[2] + w * d, v, w)

@@ -1,0 +1,161 @@
+"""Model predictive path integral control (Williams, Aldrich, Theodorou 2017): the commands that many random futures agree on."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.compiled import compiled
+from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.local import rollout
+from uvf.planning.local.planner import Limits, Situation
+from uvf.planning.local.rollout import FEATURES, Others, roll_out
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+POOL = 4
+"""Times as much noise as one round needs is drawn at the start; a round takes a part of it from a random place."""
+AT_ONCE = 0.95
+"""Share of the horizon after a contact from which no future is worth driving."""
+SMOOTH = np.array((-3.0, 12.0, 17.0, 12.0, -3.0)) / 35.0
+"""Savitzky-Golay of five points, quadratic."""
+
+
+@dataclass(frozen=True)
+class MppiSettings:
+    """How futures are drawn and judged. Weights are per unit of the feature (``rollout``), lower sums are better."""
+
+    samples: int = 1000
+    steps: int = 56
+    step: float = 0.05  # s
+    speed_noise: float = 0.3  # standard deviation, as a share of the speed range
+    turn_noise: float = 0.35  # the same of the turn rate
+    noise_memory: float = 0.85  # correlation from one step to the next: slow changes explore farther than fast ones
+    temperature: float = 0.3
+    collision_weight: float = 60.0
+    cost_weight: float = 3.0
+    to_go_weight: float = 2.0  # 1/m
+    mean_to_go_weight: float = 1.5  # 1/m
+    off_path_weight: float = 0.3  # 1/m
+    reverse_weight: float = 1.5  # 1/m
+    turn_weight: float = 0.05  # s/rad
+    near_weight: float = 8.0
+    fast_weight: float = 6.0
+    close_weight: float = 10.0
+    heed: float = 0.5  # m to a moving obstacle from which it matters
+    growth: float = 0.1  # m/s by which a moving obstacle is taken to be wider the farther ahead one looks
+
+
+class Mppi:
+    """Chooses velocities; remembers the last plan, so that each round begins where the last one ended."""
+
+    def __init__(self, limits: Limits, footprint: RobotFootprint, settings: MppiSettings, seed: int = 0) -> None:
+        self.settings = settings
+        self._limits, self._outline = limits, (footprint.sides(), footprint.circumscribed_radius)
+        self._rng = np.random.default_rng(seed)
+        shape = (POOL * settings.samples, settings.steps, 2)
+        spread = (settings.speed_noise * (limits.max_speed - min(limits.min_speed, 0.0)), settings.turn_noise * limits.max_turn_rate)
+        self._noise = (_coloured(self._rng.standard_normal(shape), settings.noise_memory) * spread).astype(np.float32)
+        self._plan: Floats = np.zeros((settings.steps, 2))
+        self._commands = np.empty((settings.samples, settings.steps, 2), dtype=np.float32)
+        self._found = np.empty((settings.samples, FEATURES), dtype=np.float32)
+        self._steady = _steady(limits, settings)
+        self.best: Floats32 = np.zeros(FEATURES, dtype=np.float32)
+        """Features of the plan that was chosen last."""
+
+    def reset(self) -> None:
+        """Forgets the last plan."""
+        self._plan[:] = 0.0
+
+    def command(self, now: Situation) -> tuple[float, float] | None:
+        """Velocity (m/s, rad/s) for now; None where every future ends in a contact at once."""
+        settings, grids, start = self.settings, now.grids, now.state
+        others = Others(now.obstacles, *self._outline, settings.heed, settings.growth)
+        offset = int(self._rng.integers(0, (POOL - 1) * settings.samples + 1))
+        _draw(self._plan, self._noise, offset, self._steady, self._commands)
+        _clip(self._commands, self._limits)
+        roll_out(grids, start, self._commands, (settings.step, self._limits), others, self._found)
+        costs = self._found @ self._weights
+        weights = np.exp(-(costs - costs.min()) / settings.temperature)
+        _average(self._commands, weights / weights.sum(), self._plan)
+        self._smooth()
+        chosen = self._plan[None].astype(np.float32)
+        roll_out(grids, start, chosen, (settings.step, self._limits), others, self._found[:1])
+        if self._found[0, rollout.COLLIDED] > 0.0:  # the average of two ways round may lie between them
+            best = int(np.argmin(costs))
+            self._plan[:] = self._commands[best]
+            roll_out(grids, start, self._commands[best : best + 1].copy(), (settings.step, self._limits), others, self._found[:1])
+        self.best = self._found[0].copy()
+        speed, turn = float(self._plan[0, 0]), float(self._plan[0, 1])
+        self._plan[:-1] = self._plan[1:]
+        return None if self.best[rollout.COLLIDED] > AT_ONCE else (speed, turn)
+
+    @property
+    def _weights(self) -> Floats32:
+        s, weights = self.settings, np.zeros(FEATURES, dtype=np.float32)
+        weights[rollout.COLLIDED], weights[rollout.COST], weights[rollout.NEAR] = s.collision_weight, s.cost_weight, s.near_weight
+        weights[rollout.TO_GO], weights[rollout.MEAN_TO_GO], weights[rollout.OFF_PATH] = (
+            s.to_go_weight,
+            s.mean_to_go_weight,
+            s.off_path_weight,
+        )
+        weights[rollout.FAST], weights[rollout.CLOSE] = s.fast_weight, s.close_weight
+        weights[rollout.REVERSED], weights[rollout.TURNED] = s.reverse_weight, s.turn_weight
+        return weights
+
+    def _smooth(self) -> None:
+        for k in range(2):
+            padded = np.concatenate(([self._plan[0, k]] * 2, self._plan[:, k], [self._plan[-1, k]] * 2))
+            self._plan[:, k] = np.convolve(padded, SMOOTH, mode="valid")
+
+
+def _steady(limits: Limits, settings: MppiSettings) -> Floats32:
+    """(k, 2) commands held for the whole horizon: they find a way where noise round the last plan does not."""
+    speeds = np.linspace(limits.min_speed, limits.max_speed, 9)
+    turns = np.linspace(-limits.max_turn_rate, limits.max_turn_rate, 13)
+    pairs = np.stack(np.meshgrid(speeds, turns, indexing="ij"), axis=-1).reshape(-1, 2)
+    return pairs[: settings.samples // 2].astype(np.float32)
+
+
+def _coloured(white: Floats, memory: float) -> Floats:
+    """Noise (k, n, 2) of unit deviation with so much correlation from step to step, from white noise; the first step has it too."""
+    out = white.copy()
+    for i in range(1, white.shape[1]):
+        out[:, i] = memory * out[:, i - 1] + np.sqrt(1.0 - memory**2) * white[:, i]
+    return out
+
+
+@compiled
+def _draw(plan: Floats, noise: Floats32, offset: int, steady: Floats32, out: Floats32) -> None:
+    """The last plan itself, commands held steady, and the plan with noise."""
+    samples, steps = out.shape[0], out.shape[1]
+    for k in range(samples):
+        for i in range(steps):
+            for j in range(2):
+                if k == 0:
+                    out[k, i, j] = plan[i, j]
+                elif k <= steady.shape[0]:
+                    out[k, i, j] = steady[k - 1, j]
+                else:
+                    out[k, i, j] = plan[i, j] + noise[offset + k, i, j]
+
+
+@compiled
+def _clip(commands: Floats32, limits: Limits) -> None:
+    """To what the vehicle is allowed."""
+    for k in range(commands.shape[0]):
+        for i in range(commands.shape[1]):
+            commands[k, i, 0] = min(max(commands[k, i, 0], limits.min_speed), limits.max_speed)
+            commands[k, i, 1] = min(max(commands[k, i, 1], -limits.max_turn_rate), limits.max_turn_rate)
+
+
+@compiled
+def _average(commands: Floats32, weights: Floats32, plan: Floats) -> None:
+    """The mean of the commands by their weights."""
+    plan[:] = 0.0
+    for k in range(commands.shape[0]):
+        if weights[k] > 1e-7:
+            for i in range(commands.shape[1]):
+                plan[i, 0] += weights[k] * commands[k, i, 0]
+                plan[i, 1] += weights[k] * commands[k, i, 1]

@@ -1,0 +1,68 @@
+"""What every local planner is asked: the velocity for now, from where the vehicle is, what is round it, and the path."""
+
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.planning.local.window import Grids
+
+Floats = NDArray[np.float64]
+
+NOBODY: Floats = np.zeros((0, 5))
+STOP = (0.0, 0.0)
+
+
+class Limits(NamedTuple):
+    """What a differential drive can do."""
+
+    min_speed: float  # m/s, below 0 where it may reverse
+    max_speed: float  # m/s
+    max_turn_rate: float  # rad/s
+    acceleration: float  # m/s^2
+    angular_acceleration: float  # rad/s^2
+    lateral_acceleration: float  # m/s^2, of speed times turn rate, beyond which the wheels slide or the vehicle tips
+
+
+class State(NamedTuple):
+    """Pose [m, m, rad] in the window's frame and velocity [m/s, rad/s] of the vehicle."""
+
+    x: float
+    y: float
+    yaw: float
+    speed: float
+    turn_rate: float
+
+
+@dataclass(frozen=True)
+class Situation:
+    """All that a local planner decides by; one frame for all."""
+
+    state: State
+    grids: Grids
+    path: Floats
+    """(n, 2) m, n >= 1, from the vehicle to the goal."""
+    obstacles: Floats = field(default_factory=lambda: NOBODY)
+    """(m, 5) what moves: x, y [m], vx, vy [m/s], radius [m]."""
+
+
+class LocalPlanner(Protocol):
+    """Chooses velocities at a fixed rate."""
+
+    def command(self, now: Situation) -> tuple[float, float] | None:
+        """Velocity (m/s, rad/s); None where nothing that it knows of is free of contacts."""
+        ...
+
+    def reset(self) -> None:
+        """Forgets what it remembers of earlier cycles."""
+        ...
+
+
+def within(limits: Limits, now: State, wanted: tuple[float, float], dt: float) -> tuple[float, float]:
+    """The wanted velocity (m/s, rad/s) as far as it can be reached within ``dt`` [s], and driven without sliding."""
+    dv, dw = limits.acceleration * dt, limits.angular_acceleration * dt
+    speed = min(max(wanted[0], now.speed - dv, limits.min_speed), now.speed + dv, limits.max_speed)
+    most = min(limits.max_turn_rate, limits.lateral_acceleration / max(abs(speed), 1e-3))
+    turn = min(max(wanted[1], now.turn_rate - dw), now.turn_rate + dw)
+    return speed, min(max(turn, -most), most)

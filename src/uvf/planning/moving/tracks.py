@@ -1,0 +1,160 @@
+"""Things that move, followed from scan to scan: a Kalman filter of constant velocity for each (Bar-Shalom, Li, Kirubarajan 2001, 6.3)."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from uvf.planning.moving.clusters import HIDDEN, LABEL, RADIUS, discs_of, labels_of, widths_of
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Point = tuple[float, float]
+
+NEVER = 1e6
+
+
+@dataclass(frozen=True)
+class TrackSettings:
+    """What counts as a thing that moves."""
+
+    widest: float = 1.6  # m, wider things are walls
+    acceleration: float = 1.5  # m/s^2, 1 sigma of what a thing may do
+    position_noise: float = 0.05  # m, 1 sigma of the centre of a disc that is seen whole
+    hidden_noise: float = 0.3  # m, the same of one that something covers in part
+    gate: float = 1.0  # m from where a thing is expected, within which it is looked for
+    least_speed: float = 0.2  # m/s, slower ones stand
+    certainty: float = 2.5  # times its own standard deviation that a speed must have
+    least_hits: int = 4  # scans until it is believed
+    coast: float = 0.3  # s that a thing is kept where it should be seen and is not
+    coast_hidden: float = 2.0  # s that it is kept where it cannot be seen
+    farthest: float = 12.0  # m
+
+
+@dataclass
+class Track:
+    """One thing: x, y [m], vx, vy [m/s], their covariance, and its radius [m]."""
+
+    state: Floats
+    covariance: Floats
+    radius: float
+    born: Floats
+    """(2,) m, where it was first seen."""
+    hits: int = 1
+    unseen: float = 0.0  # s, in view without being seen
+    hidden: float = 0.0  # s, out of view
+
+    def is_moving(self, settings: TrackSettings) -> bool:
+        """Whether its speed is large enough, and sure enough, and has brought it somewhere."""
+        speed = float(np.hypot(self.state[2], self.state[3]))
+        if self.hits < settings.least_hits or speed < settings.least_speed:
+            return False
+        along = self.state[2:] / speed
+        deviation = float(np.sqrt(along @ self.covariance[2:, 2:] @ along))
+        return speed > settings.certainty * deviation and float(np.hypot(*(self.state[:2] - self.born))) > 2.0 * settings.position_noise
+
+
+@dataclass
+class MovingObjects:
+    """Follows what moves; all in one frame that does not jump (odom)."""
+
+    settings: TrackSettings = field(default_factory=TrackSettings)
+    tracks: list[Track] = field(default_factory=list)
+    _t: float | None = None
+
+    def observe(self, t: float, eye: Point, points: Floats, ranges: Floats) -> Mask:
+        """Takes a scan at ``t`` [s]: points (n, 2) [m] in the order of the beams, ranges (n,) [m], 0 = none, from ``eye`` [m].
+
+        Returns the mask (n,) of beams that see something which moves. A scan that is no newer than the last is passed over.
+        """
+        if self._t is not None and t <= self._t:
+            return np.zeros(len(ranges), dtype=np.bool_)
+        dt, self._t = (0.0 if self._t is None else t - self._t), t
+        self._predict(dt)
+        seen = np.where(ranges <= self.settings.farthest, ranges, 0.0)
+        labels = labels_of(points, seen)
+        count = int(labels.max(initial=-1)) + 1
+        widths = widths_of(points, labels, count)
+        discs = discs_of(points, seen, labels, eye)
+        discs = discs[widths[discs[:, LABEL].astype(np.int64)] <= self.settings.widest]
+        matched = self._match(discs)
+        found = {id(track) for track in matched.values()}
+        self._age(dt, [track for track in self.tracks if id(track) not in found], (eye, points, seen))
+        moving = np.zeros(count, dtype=np.bool_)
+        for k, disc in enumerate(discs):
+            if (track := matched.get(k)) is None:
+                self._begin(disc)
+                continue
+            self._correct(track, disc)
+            moving[int(disc[LABEL])] = track.is_moving(self.settings)
+        mask: Mask = np.zeros(len(ranges), dtype=np.bool_)
+        mask[labels >= 0] = moving[labels[labels >= 0]]
+        return mask
+
+    def moving(self) -> Floats:
+        """(m, 5) x, y [m], vx, vy [m/s], radius [m] of what moves, now."""
+        rows = [(*track.state, track.radius) for track in self.tracks if track.is_moving(self.settings)]
+        return np.array(rows, dtype=np.float64).reshape(-1, 5)
+
+    def _predict(self, dt: float) -> None:
+        step = np.eye(4)
+        step[0, 2] = step[1, 3] = dt
+        spread = np.array(((dt**4 / 4, dt**3 / 2), (dt**3 / 2, dt**2))) * self.settings.acceleration**2
+        noise = np.kron(spread, np.eye(2))
+        for track in self.tracks:
+            track.state = step @ track.state
+            track.covariance = step @ track.covariance @ step.T + noise
+
+    def _match(self, discs: Floats) -> dict[int, Track]:
+        """Discs to tracks, by the least sum of squared Mahalanobis distances within the gate."""
+        if not len(discs) or not self.tracks:
+            return {}
+        cost = np.full((len(discs), len(self.tracks)), NEVER)
+        for j, track in enumerate(self.tracks):
+            offset = discs[:, :2] - track.state[:2]
+            for hidden in (0.0, 1.0):
+                rows = discs[:, HIDDEN] == hidden
+                spread = track.covariance[:2, :2] + self._noise(hidden) ** 2 * np.eye(2)
+                squared = np.einsum("ij,ij->i", offset @ np.linalg.inv(spread), offset) + np.log(np.linalg.det(spread) / 1e-4)
+                near = np.hypot(offset[:, 0], offset[:, 1]) <= min(self.settings.gate, 4.0 * float(np.sqrt(spread.trace())))
+                cost[rows & near, j] = squared[rows & near]
+        pairs = zip(*linear_sum_assignment(cost), strict=True)
+        return {int(k): self.tracks[int(j)] for k, j in pairs if cost[k, j] < NEVER}
+
+    def _noise(self, hidden: float) -> float:
+        return self.settings.hidden_noise if hidden else self.settings.position_noise
+
+    def _begin(self, disc: Floats) -> None:
+        place = self._noise(disc[HIDDEN]) ** 2
+        covariance = np.diag((place, place, 2.0**2, 2.0**2))
+        self.tracks.append(Track(np.array((disc[0], disc[1], 0.0, 0.0)), covariance, float(disc[RADIUS]), disc[:2].copy()))
+
+    def _correct(self, track: Track, disc: Floats) -> None:
+        noise = self._noise(disc[HIDDEN]) ** 2 * np.eye(2)
+        gain = track.covariance[:, :2] @ np.linalg.inv(track.covariance[:2, :2] + noise)
+        track.state = track.state + gain @ (disc[:2] - track.state[:2])
+        track.covariance = track.covariance - gain @ track.covariance[:2, :]
+        if not disc[HIDDEN]:
+            track.radius += 0.3 * (float(disc[RADIUS]) - track.radius)
+        track.hits, track.unseen, track.hidden = track.hits + 1, 0.0, 0.0
+
+    def _age(self, dt: float, missed: list[Track], scan: tuple[Point, Floats, Floats]) -> None:
+        """Drops tracks that have not been seen for too long: soon where they should be seen, later where they cannot be."""
+        for track in missed:
+            if _in_view(track, *scan):
+                track.unseen += dt
+            else:
+                track.hidden += dt
+        limits = self.settings
+        kept = [k for k in self.tracks if k.unseen <= limits.coast and k.hidden <= limits.coast_hidden]
+        self.tracks = [k for k in kept if k.hits > 1 or not k.hidden]
+
+
+def _in_view(track: Track, eye: Point, points: Floats, ranges: Floats) -> bool:
+    """Whether a beam passes the place where the thing should be, and ends behind it."""
+    dx, dy = track.state[0] - eye[0], track.state[1] - eye[1]
+    distance = float(np.hypot(dx, dy))
+    along, across = (points[:, 0] - eye[0]) * dx + (points[:, 1] - eye[1]) * dy, (points[:, 1] - eye[1]) * dx - (points[:, 0] - eye[0]) * dy
+    aimed = (along > 0.0) & (np.abs(across) <= 0.5 * track.radius / max(distance, 1e-6) * along)
+    return bool((aimed & ((ranges <= 0.0) | (ranges > distance + track.radius))).any())
