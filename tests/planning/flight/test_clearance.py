@@ -7,7 +7,7 @@ import pytest
 
 from uvf.maths.zones import Disc, Polygon
 from uvf.planning.flight.airspace import Airspace, Prism, space_of
-from uvf.planning.flight.clearance import Margins, is_clear_way, outside, room
+from uvf.planning.flight.clearance import ClearanceMargins, is_clear_way, outside, room
 from uvf.planning.flight.edges import PIECES, Agility, edge, needed
 
 STAR = Polygon([(0, 0), (100, 20), (40, 40), (60, 120), (10, 60), (-80, 70), (-20, 30)])
@@ -22,11 +22,8 @@ def test_distances_are_those_of_the_areas():
 
 
 def test_room_is_never_more_than_there_is():
-    space, margins, rng = (
-        space_of(Airspace((Prism(STAR, 20.0, 80.0),), floor=0.0, ceiling=150.0)),
-        Margins(5.0, 4.0),
-        np.random.default_rng(1),
-    )
+    space, margins = space_of(Airspace((Prism(STAR, 20.0, 80.0),), floor=0.0, ceiling=150.0)), ClearanceMargins(5.0, 4.0)
+    rng = np.random.default_rng(1)
     for x, y, height in rng.uniform((-150, -100, 0), (150, 200, 150), (1000, 3)):
         free = room(space, margins, (x, y, height), 0.2)
         if free <= 0:
@@ -38,7 +35,7 @@ def test_room_is_never_more_than_there_is():
 
 
 def test_a_way_over_the_top_is_clear_and_through_it_is_not():
-    space, margins = space_of(Airspace((Prism(STAR, 0.0, 80.0),))), Margins(5.0, 4.0)
+    space, margins = space_of(Airspace((Prism(STAR, 0.0, 80.0),))), ClearanceMargins(5.0, 4.0)
     line = np.array([(400.0, 0.0)])
     assert is_clear_way(space, margins, (-200.0, 30.0, 90.0, 0.0), line, 0.0)
     assert not is_clear_way(space, margins, (-200.0, 30.0, 80.0, 0.0), line, 0.0)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from uvf.maths.zones import Disc, Overlap, Polygon, Region
-from uvf.planning.flight import Airspace, Limits, Prism, box, cylinder, rrt_flight, rrt_star_flight
+from uvf.planning.flight import Airspace, FlightLimits, Prism, box, cylinder, rrt_flight, rrt_star_flight
 from uvf.planning.sampling import Budget
 
-LIMITS = Limits(radius=40.0, climb=0.15, sink=0.12, aside=8.0, above=6.0)
+LIMITS = FlightLimits(radius=40.0, climb=0.15, sink=0.12, aside=8.0, above=6.0)
 PLANNERS = [rrt_flight, rrt_star_flight]
 BUDGET = Budget(4000)
 
@@ -150,9 +150,9 @@ def test_no_way_is_said_and_not_made_up(planner):
     [
         (lambda: Airspace(floor=10.0, ceiling=5.0), "airspace: its floor, 10 m, is not below its ceiling, 5 m"),
         (lambda: Airspace((Prism(Disc((0, 0), 5), 10.0, 10.0),)), "obstacle: its floor"),
-        (lambda: Limits(0.0, 0.1, 0.1, 1.0, 1.0), "turning radius of 0 m"),
-        (lambda: Limits(10.0, 0.0, 0.1, 1.0, 1.0), "angles of 0 rad to climb"),
-        (lambda: Limits(10.0, 0.1, 0.1, -1.0, 1.0), "margins of -1 m aside"),
+        (lambda: FlightLimits(0.0, 0.1, 0.1, 1.0, 1.0), "turning radius of 0 m"),
+        (lambda: FlightLimits(10.0, 0.0, 0.1, 1.0, 1.0), "angles of 0 rad to climb"),
+        (lambda: FlightLimits(10.0, 0.1, 0.1, -1.0, 1.0), "margins of -1 m aside"),
         (lambda: rrt_flight(Airspace(), LIMITS, ((0, 0, math.nan, 0), (1, 1, 1, 1)), Budget(1), 0), "start: .* four finite numbers"),
         (lambda: rrt_flight(Airspace(), LIMITS, ((0, 0, 0, 0), (1, 1, 1, 1)), Budget(-1), 0), "a budget of -1 iterations"),
     ],

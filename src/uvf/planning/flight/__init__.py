@@ -9,8 +9,8 @@ if TYPE_CHECKING:
     from uvf.planning.flight.airspace import Prism as Prism
     from uvf.planning.flight.airspace import box as box
     from uvf.planning.flight.airspace import cylinder as cylinder
-    from uvf.planning.flight.planner import FlightPath as FlightPath
-    from uvf.planning.flight.planner import Limits as Limits
+    from uvf.planning.flight.planner import DubinsAirplanePath as DubinsAirplanePath
+    from uvf.planning.flight.planner import FlightLimits as FlightLimits
     from uvf.planning.flight.planner import rrt_flight as rrt_flight
     from uvf.planning.flight.planner import rrt_star_flight as rrt_star_flight
 
@@ -19,8 +19,8 @@ OFFERED = {
     "Prism": "uvf.planning.flight.airspace:Prism",
     "box": "uvf.planning.flight.airspace:box",
     "cylinder": "uvf.planning.flight.airspace:cylinder",
-    "Limits": "uvf.planning.flight.planner:Limits",
-    "FlightPath": "uvf.planning.flight.planner:FlightPath",
+    "FlightLimits": "uvf.planning.flight.planner:FlightLimits",
+    "DubinsAirplanePath": "uvf.planning.flight.planner:DubinsAirplanePath",
     "rrt_flight": "uvf.planning.flight.planner:rrt_flight",
     "rrt_star_flight": "uvf.planning.flight.planner:rrt_star_flight",
 }

@@ -18,6 +18,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+ANYWHERE = Region()
+
+
 @dataclass(frozen=True)
 class Prism:
     """A polygon or disc between two heights [m]; from below any ground and without an end upwards unless they are given."""
@@ -35,7 +38,7 @@ class Airspace:
     """
 
     obstacles: tuple[Prism, ...] = ()
-    fence: Region = Region()
+    fence: Region = ANYWHERE
     floor: float = -inf
     ceiling: float = inf
 
@@ -76,7 +79,7 @@ class Space(NamedTuple):
 
 def space_of(airspace: Airspace) -> Space:
     """The airspace for kernels. Raises ValueError for an area that is neither a disc, a polygon nor an overlap of such."""
-    solids = [(area, p.floor, p.ceiling, 0) for p in airspace.obstacles for area in (p.area,)]
+    solids = [(p.area, p.floor, p.ceiling, 0) for p in airspace.obstacles]
     for area in airspace.fence.exclude:
         solids += [(part, -inf, inf, 0) for part in _parts(area, is_alone=True)]
     fence = [(part, -inf, inf, i) for i, area in enumerate(airspace.fence.include) for part in _parts(area, is_alone=False)]

@@ -18,7 +18,7 @@ STEP = 0.5
 """[m] along a curve at least, where there is no room for more."""
 
 
-class Margins(NamedTuple):
+class ClearanceMargins(NamedTuple):
     """Distances [m] that are kept at least: ``aside`` from edges, ``above`` and below from heights."""
 
     aside: float
@@ -28,7 +28,7 @@ class Margins(NamedTuple):
 @compiled
 def outside(areas: Areas, i: int, x: float, y: float, enough: float) -> float:
     """Signed distance [m] from a place to the edge of an area, negative inside; a lower bound where that is ``enough``."""
-    gap = hypot(x - areas.discs[i, 0], y - areas.discs[i, 1]) - areas.discs[i, 2]
+    gap: float = hypot(x - areas.discs[i, 0], y - areas.discs[i, 1]) - areas.discs[i, 2]
     first, count = areas.spans[i]
     if count == 0 or gap >= enough:
         return gap
@@ -58,7 +58,7 @@ def _within(fence: Areas, x: float, y: float) -> float:
 
 
 @compiled
-def room(space: Space, margins: Margins, at: tuple[float, float, float], slope: float) -> float:
+def room(space: Space, margins: ClearanceMargins, at: tuple[float, float, float], slope: float) -> float:
     """Distance [m] over ground that may be flown any way from x, y, height; ``slope`` is the steepest climb or sink on it.
 
     Negative where the place is nearer than the margins to something; margins are taken half a ``STEP`` larger, so that they hold between
@@ -79,7 +79,7 @@ def room(space: Space, margins: Margins, at: tuple[float, float, float], slope: 
 
 
 @compiled
-def is_clear_way(space: Space, margins: Margins, start: Configuration, segments: Floats, slope: float) -> bool:
+def is_clear_way(space: Space, margins: ClearanceMargins, start: Configuration, segments: Floats, slope: float) -> bool:
     """Whether an aircraft stays clear along segments (k, 2), as in ``uvf.maths.curves.segments``, climbing by ``slope`` all the way."""
     x, y, height, course = start
     if room(space, margins, (x, y, height), slope) < 0.0:

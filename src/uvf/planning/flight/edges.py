@@ -62,7 +62,7 @@ def _dubins(radius: float, a: Configuration, b: Configuration, out: Floats) -> f
 
 @compiled
 def edge(agility: Agility, a: Configuration, b: Configuration, out: Floats) -> float:
-    """Writes the segments of the shortest edge found from ``a`` to ``b`` into ``out`` (5, 2), made longer where it must be; its length [m]."""
+    """Writes the shortest edge found from ``a`` to ``b`` into ``out`` (5, 2), made longer where it must be; its length [m]."""
     length = _dubins(agility.radius, a, b, out)
     missing = needed(agility, b[2] - a[2]) - length
     if missing <= 0.0:

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from uvf.maths.compiled import compiled
 from uvf.maths.curves.segments import end_of
 from uvf.planning.flight.airspace import Space
-from uvf.planning.flight.clearance import Configuration, Margins, is_clear_way, room
+from uvf.planning.flight.clearance import ClearanceMargins, Configuration, is_clear_way, room
 from uvf.planning.flight.edges import PIECES, Agility, edge, needed, plane_length, straight_edge
-from uvf.planning.sampling.neighbours import Found, nearest
-from uvf.planning.sampling.tree import GOAL, PARENT, SIZE, Tree, add, is_full, lead_anew, put
+from uvf.planning.sampling.neighbours import NearestNodes, nearest
+from uvf.planning.sampling.tree import GOAL, PARENT, SIZE, CurveTree, add, is_full, lead_anew, put
 
 Floats = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class Flight(NamedTuple):
     """What kernels need: the airspace, what the aircraft can, and where it goes; samples come from the box ``low`` to ``high`` (3,)."""
 
     space: Space
-    margins: Margins
+    margins: ClearanceMargins
     agility: Agility
     start: Configuration
     goal: Configuration
@@ -44,24 +44,24 @@ class Flight(NamedTuple):
     step: float
 
 
-class Buffers(NamedTuple):
+class FlightBuffers(NamedTuple):
     """``heights`` (n,) [m] of the tree's nodes, and room for near nodes, costs of ways over them, and two curves (5, 2)."""
 
     heights: Floats
-    near: Found
+    near: NearestNodes
     costs: Floats
     curve: Floats
     other: Floats
 
 
 @compiled
-def at(tree: Tree, buffers: Buffers, i: int) -> Configuration:
+def at(tree: CurveTree, buffers: FlightBuffers, i: int) -> Configuration:
     """The configuration of a node."""
     return tree.nodes[i, 0], tree.nodes[i, 1], buffers.heights[i], tree.nodes[i, 2]
 
 
 @compiled
-def _place(flight: Flight, tree: Tree, row: Floats) -> tuple[float, float]:
+def _place(flight: Flight, tree: CurveTree, row: Floats) -> tuple[float, float]:
     """x, y [m] of a sample: in the ellipse over which a way may be shorter than the one known (Gammell 2014), else in the box."""
     low, high, start, goal = flight.low, flight.high, flight.start, flight.goal
     line = hypot(goal[0] - start[0], goal[1] - start[1])
@@ -80,7 +80,7 @@ def _place(flight: Flight, tree: Tree, row: Floats) -> tuple[float, float]:
 
 
 @compiled
-def _sample(flight: Flight, tree: Tree, row: Floats, buffers: Buffers) -> Configuration:
+def _sample(flight: Flight, tree: CurveTree, row: Floats, buffers: FlightBuffers) -> Configuration:
     low, high, goal = flight.low, flight.high, flight.goal
     known = tree.state[GOAL]
     if known < 0 and row[4] < GOAL_BIAS:
@@ -123,7 +123,7 @@ def _cut(flight: Flight, here: Configuration, target: Configuration, length: flo
 
 
 @compiled
-def _extend(flight: Flight, tree: Tree, target: Configuration, buffers: Buffers) -> tuple[int, Configuration, float]:
+def _extend(flight: Flight, tree: CurveTree, target: Configuration, buffers: FlightBuffers) -> tuple[int, Configuration, float]:
     """The node that a new one follows (-1: none), its place, and the length [m] of the curve, which is in ``buffers.curve``."""
     place = (target[0], target[1], target[3])
     count = nearest(tree.buckets, tree.nodes, place, flight.agility.radius, CANDIDATES, buffers.near)
@@ -131,7 +131,7 @@ def _extend(flight: Flight, tree: Tree, target: Configuration, buffers: Buffers)
         here = at(tree, buffers, buffers.near.ids[k])
         buffers.costs[k] = max(plane_length(flight.agility, here, target), needed(flight.agility, target[2] - here[2]))
     for _ in range(count if tree.state[GOAL] < 0 else 1):
-        k = np.argmin(buffers.costs[:count])
+        k = int(np.argmin(buffers.costs[:count]))
         i, steep = int(buffers.near.ids[k]), buffers.costs[k]
         buffers.costs[k] = inf
         here = at(tree, buffers, i)
@@ -152,7 +152,7 @@ def _extend(flight: Flight, tree: Tree, target: Configuration, buffers: Buffers)
 
 
 @compiled
-def _try_goal(flight: Flight, tree: Tree, i: int, buffers: Buffers) -> None:
+def _try_goal(flight: Flight, tree: CurveTree, i: int, buffers: FlightBuffers) -> None:
     """Leads from node ``i`` to the goal, with circles if it must, if that is clear and shorter than any way known."""
     known = tree.state[GOAL]
     best = tree.costs[known] if known >= 0 else inf
@@ -179,13 +179,13 @@ def _edge_cost(flight: Flight, a: Configuration, b: Configuration) -> float:
 
 
 @compiled
-def _cheapest(flight: Flight, tree: Tree, new: Configuration, limit: float, count: int, buffers: Buffers) -> tuple[int, float]:
+def _cheapest(flight: Flight, tree: CurveTree, new: Configuration, limit: float, count: int, buffers: FlightBuffers) -> tuple[int, float]:
     """(node, cost [m]) of the neighbour over which the clear way to ``new`` costs least, below ``limit``; -1: none."""
     for k in range(count):
         i = buffers.near.ids[k]
         buffers.costs[k] = tree.costs[i] + _edge_cost(flight, at(tree, buffers, i), new)
     for _ in range(count):
-        k = np.argmin(buffers.costs[:count])
+        k = int(np.argmin(buffers.costs[:count]))
         cost, i = buffers.costs[k], int(buffers.near.ids[k])
         if cost >= limit:
             break
@@ -199,7 +199,7 @@ def _cheapest(flight: Flight, tree: Tree, new: Configuration, limit: float, coun
 
 
 @compiled
-def _rewire(flight: Flight, tree: Tree, new: int, count: int, buffers: Buffers) -> None:
+def _rewire(flight: Flight, tree: CurveTree, new: int, count: int, buffers: FlightBuffers) -> None:
     here = at(tree, buffers, new)
     for k in range(count):
         i = int(buffers.near.ids[k])
@@ -213,7 +213,7 @@ def _rewire(flight: Flight, tree: Tree, new: int, count: int, buffers: Buffers) 
 
 
 @compiled
-def grow(flight: Flight, tree: Tree, draws: Floats, buffers: Buffers, is_star: bool) -> int:
+def grow(flight: Flight, tree: CurveTree, draws: Floats, buffers: FlightBuffers, is_star: bool) -> int:
     """Grows a tree by an iteration for each row of ``draws`` (n, 7): RRT until it reaches the goal, RRT* all the way; iterations done."""
     if tree.state[SIZE] == 1 and draws.shape[0] > 0:
         _try_goal(flight, tree, 0, buffers)

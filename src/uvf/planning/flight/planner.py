@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from uvf.maths.curves.segments import end_of, moved
 from uvf.planning.flight.airspace import Airspace, Space, space_of
-from uvf.planning.flight.clearance import STEP, Configuration, Margins, outside, room
+from uvf.planning.flight.clearance import STEP, ClearanceMargins, Configuration, outside, room
 from uvf.planning.flight.edges import PIECES, Agility
-from uvf.planning.flight.growing import DRAWS, Buffers, Flight, at, grow
+from uvf.planning.flight.growing import DRAWS, Flight, FlightBuffers, at, grow
 from uvf.planning.sampling.neighbours import found
 from uvf.planning.sampling.planners import Clock
 from uvf.planning.sampling.problem import Budget
-from uvf.planning.sampling.tree import GOAL, SIZE, Tree, tree, way_to
+from uvf.planning.sampling.tree import GOAL, SIZE, CurveTree, tree, way_to
 
 Floats = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ NOT_FOUND = "no way was found within the budget; one may exist: give more iterat
 
 
 @dataclass(frozen=True)
-class Limits:
+class FlightLimits:
     """What the aircraft can and keeps: turning ``radius`` [m], ``climb`` and ``sink`` angles [rad], ``aside``, ``above`` [m] as margins.
 
     Raises ValueError for a radius or angle that is not positive, and a margin that is negative.
@@ -50,7 +50,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class FlightPath:
+class DubinsAirplanePath:
     """``pieces`` (n, 7): x, y, height [m], course [rad] where each begins, length over ground [m], curvature [1/m], climb [m/m].
 
     ``waypoints`` (k, 4): x, y, height [m], course [rad] of start, nodes and goal; Dubins curves lead from one to the next.
@@ -80,7 +80,7 @@ class FlightPath:
 class FlightPlan:
     """A planner's answer: the ``path``, or None and the ``reason``."""
 
-    path: FlightPath | None
+    path: DubinsAirplanePath | None
     reason: str
     nodes: int
     iterations: int
@@ -91,7 +91,9 @@ class FlightPlan:
         return self.path.length if self.path else inf
 
 
-def rrt_flight(airspace: Airspace, limits: Limits, query: tuple[Configuration, Configuration], budget: Budget, seed: int) -> FlightPlan:
+def rrt_flight(
+    airspace: Airspace, limits: FlightLimits, query: tuple[Configuration, Configuration], budget: Budget, seed: int
+) -> FlightPlan:
     """The first way found from start to goal (x, y, height [m], course [rad]) that stays clear; the same for the same ``seed``.
 
     LaValle's RRT with Dubins airplane edges. Raises ValueError for a query that is not finite, or a budget that makes no sense.
@@ -100,14 +102,14 @@ def rrt_flight(airspace: Airspace, limits: Limits, query: tuple[Configuration, C
 
 
 def rrt_star_flight(
-    airspace: Airspace, limits: Limits, query: tuple[Configuration, Configuration], budget: Budget, seed: int
+    airspace: Airspace, limits: FlightLimits, query: tuple[Configuration, Configuration], budget: Budget, seed: int
 ) -> FlightPlan:
     """The shortest way that RRT* finds within the whole budget. Else as ``rrt_flight``."""
     return _planned(airspace, limits, query, (budget, True), seed)
 
 
 def _planned(
-    airspace: Airspace, limits: Limits, query: tuple[Configuration, Configuration], how: tuple[Budget, bool], seed: int
+    airspace: Airspace, limits: FlightLimits, query: tuple[Configuration, Configuration], how: tuple[Budget, bool], seed: int
 ) -> FlightPlan:
     clock, flight = Clock(how[0]), _flight(airspace, limits, query)
     for what, place in (("start", flight.start), ("goal", flight.goal)):
@@ -117,7 +119,7 @@ def _planned(
     x, y, height, course = flight.start
     grown = tree((x, y, course), capacity, (flight.low[0], flight.low[1]), (flight.high[0], flight.high[1]))
     near = found()
-    buffers = Buffers(np.empty(capacity), near, np.empty(near.ids.size), np.zeros((PIECES, 2)), np.zeros((PIECES, 2)))
+    buffers = FlightBuffers(np.empty(capacity), near, np.empty(near.ids.size), np.zeros((PIECES, 2)), np.zeros((PIECES, 2)))
     buffers.heights[0] = height
     rng, done = np.random.default_rng(seed), 0
     while done < clock.iterations and clock.is_running:
@@ -132,7 +134,7 @@ def _planned(
     return FlightPlan(_path(grown, buffers, goal), "", nodes, done)
 
 
-def fault(space: Space, margins: Margins, place: Configuration) -> str:
+def fault(space: Space, margins: ClearanceMargins, place: Configuration) -> str:
     """Why an aircraft may not be at a place; empty if it may."""
     x, y, height, _ = place
     if room(space, margins, (x, y, height), 1.0) >= 0.0:
@@ -150,7 +152,7 @@ def fault(space: Space, margins: Margins, place: Configuration) -> str:
     return f"lies outside of the fence, or is nearer than {margins.aside:g} m to its edge"
 
 
-def _flight(airspace: Airspace, limits: Limits, query: tuple[Configuration, Configuration]) -> Flight:
+def _flight(airspace: Airspace, limits: FlightLimits, query: tuple[Configuration, Configuration]) -> Flight:
     ends = []
     for what, place in zip(("start", "goal"), query, strict=True):
         if len(place) != 4 or not all(isfinite(value) for value in place):
@@ -161,10 +163,10 @@ def _flight(airspace: Airspace, limits: Limits, query: tuple[Configuration, Conf
     line = hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1])
     step = max(TURNS * radius, STRIDE * line)
     agility = Agility(float(radius), tan(limits.climb), tan(limits.sink))
-    return Flight(space, Margins(float(limits.aside), float(limits.above)), agility, ends[0], ends[1], low, high, step)
+    return Flight(space, ClearanceMargins(float(limits.aside), float(limits.above)), agility, ends[0], ends[1], low, high, step)
 
 
-def _sampled_box(space: Space, limits: Limits, ends: Floats) -> tuple[Floats, Floats]:
+def _sampled_box(space: Space, limits: FlightLimits, ends: Floats) -> tuple[Floats, Floats]:
     """Lower and upper corner (3,) of where a way may lead: within the fence, or about all that is there; over the highest obstacle."""
     areas = space.fence if len(space.fence.groups) else space.obstacles
     pad = 0.0 if len(space.fence.groups) else ABOUT * limits.radius
@@ -178,7 +180,7 @@ def _sampled_box(space: Space, limits: Limits, ends: Floats) -> tuple[Floats, Fl
     return np.array((*low, min(lowest, highest))), np.array((*high, max(lowest, highest)))
 
 
-def _path(grown: Tree, buffers: Buffers, goal: int) -> FlightPath:
+def _path(grown: CurveTree, buffers: FlightBuffers, goal: int) -> DubinsAirplanePath:
     nodes, rows = way_to(grown, goal), []
     for before, after in itertools.pairwise(nodes):
         x, y, height, course = at(grown, buffers, before)
@@ -190,4 +192,4 @@ def _path(grown: Tree, buffers: Buffers, goal: int) -> FlightPath:
             x, y, course = end_of((x, y, course), curve[k : k + 1])
             height += climb * length
     waypoints = np.array([at(grown, buffers, i) for i in nodes])
-    return FlightPath(np.array(rows).reshape(-1, 7), waypoints)
+    return DubinsAirplanePath(np.array(rows).reshape(-1, 7), waypoints)
