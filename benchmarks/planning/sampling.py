@@ -11,6 +11,7 @@ tighter, by a check that knows neither planner; ``median / line``: median of the
 ``cut short`` is the own way after ``CUTS`` tries to cut it short, in the same time. Without OMPL its rows are left out.
 """
 
+import importlib
 import itertools
 import sys
 import time
@@ -18,6 +19,7 @@ from collections.abc import Callable
 from functools import partial
 from math import cos, dist, pi, sin
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,8 +90,7 @@ def own(ground: Ground, cuts: int, query: tuple[Triple, Triple], seed: int) -> W
 
 def ompl(ground: Ground, query: tuple[Triple, Triple], seed: int) -> Way | None:
     """By OMPL's Python wheel, as its own examples use it. Raises ImportError without it."""
-    from ompl import base, geometric, util
-
+    base, geometric, util = (importlib.import_module(f"ompl.{part}") for part in ("base", "geometric", "util"))
     util.setLogLevel(util.LOG_ERROR)
     free, (rows, columns) = (ground.field.values > 0.0).tolist(), ground.field.values.shape
     space, bounds = base.DubinsStateSpace(RADIUS), base.RealVectorBounds(2)
@@ -99,9 +100,9 @@ def ompl(ground: Ground, query: tuple[Triple, Triple], seed: int) -> Way | None:
     space.setBounds(bounds)
     setup = geometric.SimpleSetup(space)
 
-    def is_valid(state: object) -> bool:
-        x, y = state.getX(), state.getY()  # type: ignore[attr-defined]
-        return bool(0.0 <= x < columns and 0.0 <= y < rows and free[int(y)][int(x)])
+    def is_valid(state: Any) -> bool:
+        x, y = state.getX(), state.getY()
+        return 0.0 <= x < columns and 0.0 <= y < rows and bool(free[int(y)][int(x)])
 
     setup.setStateValidityChecker(is_valid)
     ends = []

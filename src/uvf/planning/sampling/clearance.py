@@ -16,7 +16,7 @@ from uvf.maths.grids import distance_field
 Floats = NDArray[np.float64]
 
 SHORT = 0.2
-"""Cells: the step where there is no room for a longer one. The arc is so near to its chord that the chord's cells are looked at."""
+"""Cells: the step where there is no room for a longer one."""
 HALF_DIAGONAL = 0.70711
 
 
@@ -143,12 +143,27 @@ def _step(field: ClearanceField, body: Body, at: Triple, curvature: float, facin
 
 
 @compiled
+def _bulges(field: ClearanceField, body: Body, at: Triple, curvature: float, facing: float) -> bool:
+    """Whether the arc of a short step may leave free cells although both its ends are on them: between them it bulges, by so little."""
+    bulge = 0.5 * abs(curvature) * (SHORT * field.resolution) ** 2
+    for i in range(body.radii.size):
+        ahead, radius = facing * body.offsets[i], body.radii[i]
+        x, y = at[0] + ahead * cos(at[2]), at[1] + ahead * sin(at[2])
+        for side in (-bulge, bulge):
+            row, column = _cell(field, x, y + side)
+            to_row, to_column = _cell(field, x + side, y)
+            if not (_is_free(field, row, column, radius) and _is_free(field, to_row, to_column, radius)):
+                return True
+    return False
+
+
+@compiled
 def free_length(field: ClearanceField, body: Body, start: Triple, segments: Floats, facing: float) -> float:
     """Distance [m] that the body can drive along segments (k, 2) from ``start`` until it is not free; the whole length where it can.
 
     Sphere stepping: nothing can be met within the room that the field shows. A start that is not free gives -1.
     """
-    done, safe, at = 0.0, -1.0, start
+    done, safe, at, total = 0.0, -1.0, start, np.abs(segments[:, 0]).sum()
     before, was_short = start, False
     for k in range(segments.shape[0]):
         length, direction, curvature = abs(segments[k, 0]), (1.0 if segments[k, 0] >= 0.0 else -1.0), segments[k, 1]
@@ -157,12 +172,16 @@ def free_length(field: ClearanceField, body: Body, start: Triple, segments: Floa
         begin, s = at, 0.0
         while True:
             step = _step(field, body, at, curvature, facing)
+            is_short = step <= SHORT * field.resolution
+            is_end = done + s == 0.0 or done + s >= total
             if step < 0.0 or (was_short and _cuts_corner(field, body, before, at, facing)):
+                return safe
+            if is_short and curvature != 0.0 and not is_end and _bulges(field, body, at, curvature, facing):
                 return safe
             safe = done + s
             if s >= length:
                 break
-            before, was_short = at, step <= SHORT * field.resolution
+            before, was_short = at, is_short
             s = min(s + step, length)
             at = moved(begin[0], begin[1], begin[2], curvature, direction * s)
         done += length

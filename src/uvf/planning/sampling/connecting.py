@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 from uvf.maths.compiled import compiled
 from uvf.maths.curves.segments import Triple, end_of
 from uvf.planning.sampling.clearance import free_length
-from uvf.planning.sampling.growing import NOTHING, WORTH, Buffers, closest, draw, extend
+from uvf.planning.sampling.growing import NOTHING, WORTH, GrowthBuffers, closest, draw, extend
 from uvf.planning.sampling.problem import Problem
 from uvf.planning.sampling.spaces import connect, cut, leaving, turned
-from uvf.planning.sampling.tree import Tree, add, is_full, node
+from uvf.planning.sampling.tree import CurveTree, add, is_full, node
 
 Floats = NDArray[np.float64]
 
 
 @compiled
-def _reach(problem: Problem, tree: Tree, target: Triple, facing: float, buffers: Buffers) -> int:
+def _reach(problem: Problem, tree: CurveTree, target: Triple, facing: float, buffers: GrowthBuffers) -> int:
     """Leads from the tree as far towards ``target`` as is free, a node each step; the node at the target, or -1."""
     count = closest(problem, tree, target, buffers)
     i = int(buffers.near.ids[np.argmin(buffers.costs[:count])])
@@ -42,7 +42,9 @@ def _reach(problem: Problem, tree: Tree, target: Triple, facing: float, buffers:
 
 
 @compiled
-def grow_rrt_connect(problem: Problem, trees: tuple[Tree, Tree], draws: Floats, buffers: Buffers, turn: int) -> tuple[int, tuple[int, int]]:
+def grow_rrt_connect(
+    problem: Problem, trees: tuple[CurveTree, CurveTree], draws: Floats, buffers: GrowthBuffers, turn: int
+) -> tuple[int, tuple[int, int]]:
     """Grows both trees, each in its turn, until they meet or one is full: iterations done, and the nodes (-1: none) where they met.
 
     trees: from the start, and from the goal, turned. draws: (n, 5); turn: number of the first iteration, even ones are the start's.

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from uvf.maths.compiled import compiled
 from uvf.maths.curves.segments import MOST, Triple, end_of
 from uvf.planning.sampling.clearance import free_length, is_free_way
-from uvf.planning.sampling.neighbours import Found, found, nearest
+from uvf.planning.sampling.neighbours import NearestNodes, found, nearest
 from uvf.planning.sampling.problem import Problem
 from uvf.planning.sampling.spaces import PLANE, connect, cut, distance, leaving
-from uvf.planning.sampling.tree import GOAL, PARENT, SIZE, Tree, add, is_full, lead_anew, node, put
+from uvf.planning.sampling.tree import GOAL, PARENT, SIZE, CurveTree, add, is_full, lead_anew, node, put
 
 Floats = NDArray[np.float64]
 
@@ -32,19 +32,19 @@ WORTH = 0.3
 NOTHING = 1e-6  # m
 
 
-class Buffers(NamedTuple):
+class GrowthBuffers(NamedTuple):
     """Room for one iteration: near nodes, costs of the ways over each [m] (MOST + 1,), and two curves (5, 2)."""
 
-    near: Found
+    near: NearestNodes
     costs: Floats
     curve: Floats
     other: Floats
 
 
-def buffers() -> Buffers:
+def buffers() -> GrowthBuffers:
     """Room for the iterations of one planner."""
     near = found()
-    return Buffers(near, np.empty(near.ids.size + 1), np.zeros((MOST, 2)), np.zeros((MOST, 2)))
+    return GrowthBuffers(near, np.empty(near.ids.size + 1), np.zeros((MOST, 2)), np.zeros((MOST, 2)))
 
 
 @compiled
@@ -79,7 +79,7 @@ def _beside(problem: Problem, at: Triple, row: Floats) -> Triple:
 
 
 @compiled
-def _beside_way(problem: Problem, tree: Tree, row: Floats) -> Triple:
+def _beside_way(problem: Problem, tree: CurveTree, row: Floats) -> Triple:
     """Beside one of the nodes on the way known."""
     count, i = 0, tree.state[GOAL]
     while i >= 0:
@@ -91,7 +91,7 @@ def _beside_way(problem: Problem, tree: Tree, row: Floats) -> Triple:
 
 
 @compiled
-def draw(problem: Problem, tree: Tree, row: Floats, buffers: Buffers) -> Triple:
+def draw(problem: Problem, tree: CurveTree, row: Floats, buffers: GrowthBuffers) -> Triple:
     """A sample from the random numbers ``row`` (5,), in a tree that may know a way to the goal."""
     if tree.state[GOAL] < 0:
         if row[3] < GOAL_BIAS:
@@ -128,7 +128,7 @@ def can_be_on_way(problem: Problem, at: Triple, best: float) -> bool:
 
 
 @compiled
-def closest(problem: Problem, tree: Tree, target: Triple, buffers: Buffers) -> int:
+def closest(problem: Problem, tree: CurveTree, target: Triple, buffers: GrowthBuffers) -> int:
     """How many near nodes there are; ``buffers.costs`` are the lengths [m] of the curves from them to ``target``."""
     most = 1 if problem.space.kind == PLANE else CANDIDATES
     count = nearest(tree.buckets, tree.nodes, target, problem.weight, most, buffers.near)
@@ -138,7 +138,7 @@ def closest(problem: Problem, tree: Tree, target: Triple, buffers: Buffers) -> i
 
 
 @compiled
-def extend(problem: Problem, tree: Tree, target: Triple, facing: float, buffers: Buffers) -> tuple[int, Triple, float]:
+def extend(problem: Problem, tree: CurveTree, target: Triple, facing: float, buffers: GrowthBuffers) -> tuple[int, Triple, float]:
     """A new node on the way from the tree to ``target``: the node that it follows (-1: there is none), its place, and the curve's length.
 
     The curve, [m] and [1/m], is in ``buffers.curve``; at most a step long, and free. From the near nodes, the one from which the curve is
@@ -165,7 +165,7 @@ def extend(problem: Problem, tree: Tree, target: Triple, facing: float, buffers:
 
 
 @compiled
-def try_goal(problem: Problem, tree: Tree, i: int, way: float, buffers: Buffers) -> bool:
+def try_goal(problem: Problem, tree: CurveTree, i: int, way: float, buffers: GrowthBuffers) -> bool:
     """Leads from node ``i`` to the goal, over ``way`` [m], if that is free and no way known is shorter."""
     known = tree.state[GOAL]
     cost = tree.costs[i] + way
@@ -182,7 +182,7 @@ def try_goal(problem: Problem, tree: Tree, i: int, way: float, buffers: Buffers)
 
 
 @compiled
-def grow_rrt(problem: Problem, tree: Tree, draws: Floats, buffers: Buffers) -> int:
+def grow_rrt(problem: Problem, tree: CurveTree, draws: Floats, buffers: GrowthBuffers) -> int:
     """Grows a tree by an iteration for each row of ``draws`` (n, 5) until it reaches the goal or is full; iterations done."""
     for k in range(draws.shape[0]):
         if tree.state[GOAL] >= 0 or is_full(tree):

@@ -31,8 +31,8 @@ class Buckets(NamedTuple):
     shape: NDArray[np.int64]
 
 
-class Found(NamedTuple):
-    """Buffers for the nearest nodes, nearest first: ``ids`` (MOST,), ``keys`` (MOST,) squared nearness [m^2]."""
+class NearestNodes(NamedTuple):
+    """GrowthBuffers for the nearest nodes, nearest first: ``ids`` (MOST,), ``keys`` (MOST,) squared nearness [m^2]."""
 
     ids: Ints
     keys: Floats
@@ -53,9 +53,9 @@ def buckets(capacity: int, low: tuple[float, float], high: tuple[float, float]) 
 
 
 @compiled
-def found() -> Found:
-    """Buffers for ``nearest``."""
-    return Found(np.empty(MOST, dtype=np.int32), np.empty(MOST))
+def found() -> NearestNodes:
+    """GrowthBuffers for ``nearest``."""
+    return NearestNodes(np.empty(MOST, dtype=np.int32), np.empty(MOST))
 
 
 def _size(width: float, height: float, side: float, capacity: int) -> int:
@@ -114,7 +114,7 @@ def insert(made: Buckets, nodes: Floats, i: int) -> None:
 
 
 @compiled
-def _keep(out: Found, count: int, most: int, key: float, i: int) -> int:
+def _keep(out: NearestNodes, count: int, most: int, key: float, i: int) -> int:
     """Puts a node among the nearest so far, sorted; how many there are then."""
     if count == most and key >= out.keys[count - 1]:
         return count
@@ -127,7 +127,7 @@ def _keep(out: Found, count: int, most: int, key: float, i: int) -> int:
 
 
 @compiled
-def nearest(made: Buckets, nodes: Floats, at: Triple, weight: float, most: int, out: Found) -> int:
+def nearest(made: Buckets, nodes: Floats, at: Triple, weight: float, most: int, out: NearestNodes) -> int:
     """Writes the ``most`` nearest of ``nodes`` (n, 3) into ``out``, nearest first; how many there are.
 
     weight: [m/rad] of a difference in heading. Rings of buckets about the place, until the next cannot hold any that is nearer.

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from uvf.maths.compiled import compiled
 from uvf.maths.curves.segments import Triple, moved
 from uvf.planning.sampling.path import Path
-from uvf.planning.sampling.spaces import StateSpace, leaving
-from uvf.planning.sampling.tree import Tree, node
+from uvf.planning.sampling.spaces import SteeringSpace, leaving
+from uvf.planning.sampling.tree import CurveTree, node
 
 Floats = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ def driven_back(pieces: Floats) -> Floats:
     return out
 
 
-def pieces_there(grown: Tree, nodes: Sequence[int], space: StateSpace) -> Floats:
+def pieces_there(grown: CurveTree, nodes: Sequence[int], space: SteeringSpace) -> Floats:
     """Pieces (n, 5) of the way from node to node."""
     parts = [np.empty((0, 5))]
     for before, after in itertools.pairwise(nodes):
@@ -47,7 +47,7 @@ def pieces_there(grown: Tree, nodes: Sequence[int], space: StateSpace) -> Floats
     return np.vstack(parts)
 
 
-def pieces_back(grown: Tree, nodes: Sequence[int], space: StateSpace) -> Floats:
+def pieces_back(grown: CurveTree, nodes: Sequence[int], space: SteeringSpace) -> Floats:
     """Pieces (n, 5) of the way back over nodes of a tree that looks the other way."""
     return driven_back(pieces_there(grown, nodes, space))
 

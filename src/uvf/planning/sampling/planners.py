@@ -12,9 +12,9 @@ from uvf.planning.sampling.connecting import grow_rrt_connect
 from uvf.planning.sampling.growing import DRAWS, buffers, grow_rrt
 from uvf.planning.sampling.optimal import grow_rrt_star
 from uvf.planning.sampling.pieces import joined, pieces_back, pieces_there
-from uvf.planning.sampling.problem import Budget, Ground, Plan, Problem, problem
-from uvf.planning.sampling.spaces import StateSpace, turned
-from uvf.planning.sampling.tree import GOAL, SIZE, Tree, tree, way_to
+from uvf.planning.sampling.problem import Budget, Ground, Problem, SamplingPlan, problem
+from uvf.planning.sampling.spaces import SteeringSpace, turned
+from uvf.planning.sampling.tree import GOAL, SIZE, CurveTree, tree, way_to
 
 Floats = NDArray[np.float64]
 Query = tuple[Triple, Triple]
@@ -28,34 +28,34 @@ NOT_FOUND = "no way was found within the budget; one may exist: give more iterat
 FULL = f"no way was found before the tree was full with {LARGEST} nodes; one may exist"
 
 
-def rrt(ground: Ground, space: StateSpace, query: Query, budget: Budget, seed: int) -> Plan:
+def rrt(ground: Ground, space: SteeringSpace, query: Query, budget: Budget, seed: int) -> SamplingPlan:
     """The first way that a rapidly-exploring random tree finds (LaValle 1998). The same for the same ``seed``, unless time runs out.
 
     Raises ValueError for a query or budget that is not finite (``seconds`` may be inf), and a field or body that makes no sense.
     """
     clock, asked = Clock(budget), problem(ground, space, *query)
     if isinstance(asked, str):
-        return Plan(None, asked, 0, 0)
+        return SamplingPlan(None, asked, 0, 0)
     grown, room = _tree(asked, asked.start, budget), buffers()
     done = _spend(clock, seed, lambda draws, _: (grow_rrt(asked, grown, draws, room), grown.state[GOAL] >= 0))
     return _plan(grown, asked, done)
 
 
-def rrt_star(ground: Ground, space: StateSpace, query: Query, budget: Budget, seed: int) -> Plan:
+def rrt_star(ground: Ground, space: SteeringSpace, query: Query, budget: Budget, seed: int) -> SamplingPlan:
     """The shortest way that RRT* finds within the whole budget (Karaman & Frazzoli 2011, informed). Else as ``rrt``."""
     clock, asked = Clock(budget), problem(ground, space, *query)
     if isinstance(asked, str):
-        return Plan(None, asked, 0, 0)
+        return SamplingPlan(None, asked, 0, 0)
     grown, room = _tree(asked, asked.start, budget), buffers()
     done = _spend(clock, seed, lambda draws, _: (grow_rrt_star(asked, grown, draws, room), False))
     return _plan(grown, asked, done)
 
 
-def rrt_connect(ground: Ground, space: StateSpace, query: Query, budget: Budget, seed: int) -> Plan:
+def rrt_connect(ground: Ground, space: SteeringSpace, query: Query, budget: Budget, seed: int) -> SamplingPlan:
     """The first way on which trees from both ends meet: mostly far quicker than ``rrt`` (Kuffner & LaValle 2000). Else as ``rrt``."""
     clock, asked = Clock(budget), problem(ground, space, *query)
     if isinstance(asked, str):
-        return Plan(None, asked, 0, 0)
+        return SamplingPlan(None, asked, 0, 0)
     trees, room = (_tree(asked, asked.start, budget), _tree(asked, turned(space, asked.goal), budget)), buffers()
     met = [(-1, -1)]
 
@@ -67,12 +67,12 @@ def rrt_connect(ground: Ground, space: StateSpace, query: Query, budget: Budget,
     nodes = int(trees[0].state[SIZE] + trees[1].state[SIZE])
     here, there = met[0]
     if here < 0:
-        return Plan(None, FULL if nodes > LARGEST else NOT_FOUND, nodes, done)
+        return SamplingPlan(None, FULL if nodes > LARGEST else NOT_FOUND, nodes, done)
     pieces = (pieces_there(trees[0], way_to(trees[0], here), space), pieces_back(trees[1], way_to(trees[1], there), space))
-    return Plan(joined(pieces, asked.goal), "", nodes, done)
+    return SamplingPlan(joined(pieces, asked.goal), "", nodes, done)
 
 
-def _tree(asked: Problem, root: Triple, budget: Budget) -> Tree:
+def _tree(asked: Problem, root: Triple, budget: Budget) -> CurveTree:
     (rows, columns), side = asked.field.values.shape, asked.field.resolution
     low = (asked.field.x, asked.field.y)
     # Of RRT-Connect an iteration may add as many nodes as there are steps on the longest curve.
@@ -106,8 +106,8 @@ def _spend(clock: Clock, seed: int, grow: Callable[[Floats, int], tuple[int, boo
     return done
 
 
-def _plan(grown: Tree, asked: Problem, done: int) -> Plan:
+def _plan(grown: CurveTree, asked: Problem, done: int) -> SamplingPlan:
     goal, nodes = int(grown.state[GOAL]), int(grown.state[SIZE])
     if goal < 0:
-        return Plan(None, FULL if nodes >= LARGEST - 2 else NOT_FOUND, nodes, done)
-    return Plan(joined((pieces_there(grown, way_to(grown, goal), asked.space),), asked.goal), "", nodes, done)
+        return SamplingPlan(None, FULL if nodes >= LARGEST - 2 else NOT_FOUND, nodes, done)
+    return SamplingPlan(joined((pieces_there(grown, way_to(grown, goal), asked.space),), asked.goal), "", nodes, done)

@@ -12,7 +12,7 @@ from uvf.maths.curves.segments import Triple, checked_configuration
 from uvf.planning.costmap.inflation import LETHAL, MAX_NON_OBSTACLE, cost_factors
 from uvf.planning.sampling.clearance import Body, ClearanceField, checked_field, is_clear
 from uvf.planning.sampling.path import Path
-from uvf.planning.sampling.spaces import PLANE, StateSpace
+from uvf.planning.sampling.spaces import PLANE, SteeringSpace
 from uvf.planning.search.grid_search import GridSearch
 
 Floats = NDArray[np.float64]
@@ -22,6 +22,7 @@ STEP = 0.08  # of the field's diagonal
 TURNS = 3.0  # of the turning radius
 NARROW = 2.0
 """Added to the cost of a cell of the guide, at the very edge of what the body fits through."""
+BLOCKED = 255  # value of an impassable cell
 SMOOTH = 6  # cells over which the guide's heading is taken
 
 
@@ -41,7 +42,7 @@ class Budget:
 
 
 @dataclass(frozen=True)
-class Plan:
+class SamplingPlan:
     """A planner's answer: the ``path``, or None and the ``reason``. ``nodes`` are those of its trees or roadmap."""
 
     path: Path | None
@@ -64,7 +65,7 @@ class Problem(NamedTuple):
 
     field: ClearanceField
     body: Body
-    space: StateSpace
+    space: SteeringSpace
     start: Triple
     goal: Triple
     step: float
@@ -73,7 +74,7 @@ class Problem(NamedTuple):
     guide: Floats
 
 
-def problem(ground: Ground, space: StateSpace, start: Triple, goal: Triple) -> Problem | str:
+def problem(ground: Ground, space: SteeringSpace, start: Triple, goal: Triple) -> Problem | str:
     """What kernels need to find a way from ``start`` to ``goal``, or why there is none.
 
     start, goal: x, y [m, map frame], heading [rad]. Raises ValueError for what is not finite and a field that makes no sense.
@@ -93,7 +94,7 @@ def problem(ground: Ground, space: StateSpace, start: Triple, goal: Triple) -> P
     return Problem(field, body, space, start, goal, step, space.radius, cells, _guide(field, body, space, (start, goal)))
 
 
-def _fault(field: ClearanceField, body: Body, space: StateSpace, at: Triple) -> str:
+def _fault(field: ClearanceField, body: Body, space: SteeringSpace, at: Triple) -> str:
     rows, columns = field.values.shape
     row, column = (at[1] - field.y) / field.resolution, (at[0] - field.x) / field.resolution
     if not (0 <= row < rows and 0 <= column < columns):
@@ -124,7 +125,7 @@ def _reachable(field: ClearanceField, body: Body, ends: tuple[Triple, Triple]) -
     return cells.astype(np.int32)
 
 
-def _guide(field: ClearanceField, body: Body, space: StateSpace, ends: tuple[Triple, Triple]) -> Floats:
+def _guide(field: ClearanceField, body: Body, space: SteeringSpace, ends: tuple[Triple, Triple]) -> Floats:
     """(m, 3) x, y [m], heading [rad] along the cheapest way over the cells; nothing where there is none.
 
     Ways are planned with the narrowest disc, and cost more where there is less room than the turning radius.

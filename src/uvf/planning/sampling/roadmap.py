@@ -18,8 +18,8 @@ from uvf.planning.sampling import neighbours
 from uvf.planning.sampling.clearance import Body, ClearanceField, is_clear, is_free_way
 from uvf.planning.sampling.neighbours import Buckets, buckets, insert, nearest
 from uvf.planning.sampling.pieces import joined, pieces_of
-from uvf.planning.sampling.problem import Ground, Plan, problem
-from uvf.planning.sampling.spaces import StateSpace, connect, leaving
+from uvf.planning.sampling.problem import Ground, SamplingPlan, problem
+from uvf.planning.sampling.spaces import SteeringSpace, connect, leaving
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -31,7 +31,7 @@ NOT_CONNECTED = "the roadmap does not join start and goal; a way may exist: make
 class Roadmap:
     """``nodes`` (n, 3) and the free curves between them."""
 
-    def __init__(self, ground: Ground, space: StateSpace, size: int, seed: int, count: int | None = None) -> None:
+    def __init__(self, ground: Ground, space: SteeringSpace, size: int, seed: int, count: int | None = None) -> None:
         """A roadmap of ``size`` nodes, each joined with ``count`` neighbours; None: as many as PRM* takes.
 
         The same for the same ``seed``. Raises ValueError for a size that is not positive, and ground without a free cell.
@@ -59,11 +59,11 @@ class Roadmap:
         found: Ints = self._edges
         return found
 
-    def plan(self, start: Triple, goal: Triple) -> Plan:
+    def plan(self, start: Triple, goal: Triple) -> SamplingPlan:
         """The shortest way over the roadmap from ``start`` to ``goal`` (x, y [m], heading [rad]), or the reason why there is none."""
         asked = problem(self._ground, self._space, start, goal)
         if isinstance(asked, str):
-            return Plan(None, asked, len(self.nodes), 0)
+            return SamplingPlan(None, asked, len(self.nodes), 0)
         n = len(self.nodes)
         nodes = np.vstack((self.nodes, asked.start, asked.goal))
         found = _ends(self._ground, self._space, nodes, self._buckets, self._count)
@@ -71,7 +71,7 @@ class Roadmap:
         graph = csr_array((lengths, (edges[:, 0], edges[:, 1])), shape=(n + 2, n + 2))
         cost, before = dijkstra(graph, indices=n, return_predecessors=True)
         if not np.isfinite(cost[n + 1]):
-            return Plan(None, NOT_CONNECTED, n, 0)
+            return SamplingPlan(None, NOT_CONNECTED, n, 0)
         way = [n + 1]
         while way[-1] != n:
             way.append(int(before[way[-1]]))
@@ -81,7 +81,7 @@ class Roadmap:
             curve = np.zeros((MOST, 2))
             connect(self._space, a, b, curve)
             parts.append(pieces_of(leaving(self._space, a, b), curve))
-        return Plan(joined(parts, asked.goal), "", n, 0)
+        return SamplingPlan(joined(parts, asked.goal), "", n, 0)
 
 
 def _free_nodes(ground: Ground, size: int, rng: np.random.Generator) -> Floats:
@@ -108,7 +108,7 @@ def _clear(field: ClearanceField, body: Body, nodes: Floats) -> NDArray[np.bool_
 
 
 @compiled
-def _edge(ground: Ground, space: StateSpace, nodes: Floats, pair: tuple[int, int], curve: Floats) -> float:
+def _edge(ground: Ground, space: SteeringSpace, nodes: Floats, pair: tuple[int, int], curve: Floats) -> float:
     """Length [m] of the curve from the one node to the other, at least ``LEAST``; 0 where it is not free."""
     a, b = pair
     start, end = (nodes[a, 0], nodes[a, 1], nodes[a, 2]), (nodes[b, 0], nodes[b, 1], nodes[b, 2])
@@ -117,7 +117,7 @@ def _edge(ground: Ground, space: StateSpace, nodes: Floats, pair: tuple[int, int
 
 
 @compiled
-def _joined(ground: Ground, space: StateSpace, nodes: Floats, near: Buckets, count: int) -> tuple[Ints, Floats]:
+def _joined(ground: Ground, space: SteeringSpace, nodes: Floats, near: Buckets, count: int) -> tuple[Ints, Floats]:
     """Free curves from each node to its neighbours and back: pairs (m, 2), lengths (m,) [m]."""
     n = nodes.shape[0]
     edges, lengths = np.empty((2 * n * count, 2), dtype=np.int64), np.empty(2 * n * count)
@@ -139,7 +139,7 @@ def _joined(ground: Ground, space: StateSpace, nodes: Floats, near: Buckets, cou
 
 
 @compiled
-def _ends(ground: Ground, space: StateSpace, nodes: Floats, near: Buckets, count: int) -> tuple[Ints, Floats]:
+def _ends(ground: Ground, space: SteeringSpace, nodes: Floats, near: Buckets, count: int) -> tuple[Ints, Floats]:
     """Free curves from the last node but one to its neighbours, from the neighbours of the last one to it, and between both."""
     n = nodes.shape[0] - 2
     edges, lengths = np.empty((2 * count + 1, 2), dtype=np.int64), np.empty(2 * count + 1)

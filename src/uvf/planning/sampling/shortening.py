@@ -12,14 +12,14 @@ from uvf.planning.sampling.clearance import is_free_way
 from uvf.planning.sampling.path import Path
 from uvf.planning.sampling.pieces import pieces_of
 from uvf.planning.sampling.problem import Ground
-from uvf.planning.sampling.spaces import StateSpace, connect, leaving
+from uvf.planning.sampling.spaces import SteeringSpace, connect, leaving
 
 Floats = NDArray[np.float64]
 
 GAIN = 1e-6  # m, by which a curve is shorter at least
 
 
-def shortened(ground: Ground, space: StateSpace, path: Path, tries: int, seed: int) -> Path:
+def shortened(ground: Ground, space: SteeringSpace, path: Path, tries: int, seed: int) -> Path:
     """The path after so many ``tries`` to cut it short, never longer, as free as it was; the same for the same ``seed``.
 
     Raises ValueError for a negative number of tries.
@@ -66,7 +66,7 @@ def _splice(pieces: Floats, count: int, cuts: tuple[int, float, int, float, Trip
 
 
 @compiled
-def _shorten(ground: Ground, space: StateSpace, pieces: Floats, whole: tuple[int, Triple], draws: Floats) -> int:
+def _shorten(ground: Ground, space: SteeringSpace, pieces: Floats, whole: tuple[int, Triple], draws: Floats) -> int:
     """Works on the first pieces of ``pieces`` in place, which has room for more; how many there are in the end."""
     count = whole[0]
     curve = np.zeros((MOST, 2))

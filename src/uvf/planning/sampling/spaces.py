@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 PLANE, DUBINS, REEDS_SHEPP = 0, 1, 2
 
 
-class StateSpace(NamedTuple):
+class SteeringSpace(NamedTuple):
     """``kind``: PLANE, DUBINS or REEDS_SHEPP; ``radius``: turning radius [m], 0 in the plane. Made by the functions below."""
 
     kind: int
@@ -31,23 +31,23 @@ class StateSpace(NamedTuple):
         return 2 if self.kind == PLANE else 3
 
 
-def plane() -> StateSpace:
+def plane() -> SteeringSpace:
     """Points joined by straight lines."""
-    return StateSpace(PLANE, 0.0)
+    return SteeringSpace(PLANE, 0.0)
 
 
-def dubins(radius: float) -> StateSpace:
+def dubins(radius: float) -> SteeringSpace:
     """A vehicle that only drives forwards, with turns of at least ``radius`` [m]. Raises ValueError for one that is not positive."""
-    return StateSpace(DUBINS, checked_radius(radius))
+    return SteeringSpace(DUBINS, checked_radius(radius))
 
 
-def reeds_shepp(radius: float) -> StateSpace:
+def reeds_shepp(radius: float) -> SteeringSpace:
     """A vehicle that drives both ways, with turns of at least ``radius`` [m]. Raises ValueError for one that is not positive."""
-    return StateSpace(REEDS_SHEPP, checked_radius(radius))
+    return SteeringSpace(REEDS_SHEPP, checked_radius(radius))
 
 
 @compiled
-def distance(space: StateSpace, a: Triple, b: Triple) -> float:
+def distance(space: SteeringSpace, a: Triple, b: Triple) -> float:
     """Length [m] of the shortest curve from ``a`` to ``b``."""
     if space.kind == PLANE:
         return hypot(b[0] - a[0], b[1] - a[1])
@@ -57,7 +57,7 @@ def distance(space: StateSpace, a: Triple, b: Triple) -> float:
 
 
 @compiled
-def connect(space: StateSpace, a: Triple, b: Triple, out: Floats) -> float:
+def connect(space: SteeringSpace, a: Triple, b: Triple, out: Floats) -> float:
     """Writes the segments of the shortest curve from ``a`` to ``b`` into ``out`` (5, 2); its length [m]."""
     if space.kind == PLANE:
         out[:, :] = 0.0
@@ -70,13 +70,13 @@ def connect(space: StateSpace, a: Triple, b: Triple, out: Floats) -> float:
 
 
 @compiled
-def leaving(space: StateSpace, a: Triple, b: Triple) -> Triple:
+def leaving(space: SteeringSpace, a: Triple, b: Triple) -> Triple:
     """The configuration in which the curve from ``a`` to ``b`` begins: ``a``, in the plane with the heading of the line."""
     return (a[0], a[1], atan2(b[1] - a[1], b[0] - a[0])) if space.kind == PLANE else a
 
 
 @compiled
-def turned(space: StateSpace, a: Triple) -> Triple:
+def turned(space: SteeringSpace, a: Triple) -> Triple:
     """The same place, looking the other way: curves back are curves there for who looks the other way."""
     return a if space.kind == PLANE else (a[0], a[1], wrapped(a[2] + pi))
 

@@ -16,7 +16,7 @@ PARENT, CHILD, NEXT, BEFORE = 0, 1, 2, 3
 SIZE, GOAL = 0, 1
 
 
-class Tree(NamedTuple):
+class CurveTree(NamedTuple):
     """``nodes`` (n, 3); ``costs`` (n,) [m] of the way from the root; ``curves`` (n, 5, 2) segments from the parent.
 
     ``links`` (n, 4): parent, first child, next and previous child of the same parent, -1: none. ``state``: nodes there are, and the one
@@ -32,9 +32,9 @@ class Tree(NamedTuple):
     buckets: Buckets
 
 
-def tree(root: Triple, capacity: int, low: tuple[float, float], high: tuple[float, float]) -> Tree:
+def tree(root: Triple, capacity: int, low: tuple[float, float], high: tuple[float, float]) -> CurveTree:
     """A tree of one node, with room for so many in the rectangle from ``low`` to ``high`` [m]."""
-    made = Tree(
+    made = CurveTree(
         np.empty((capacity, 3)),
         np.empty(capacity),
         np.empty((capacity, MOST, 2)),
@@ -48,19 +48,19 @@ def tree(root: Triple, capacity: int, low: tuple[float, float], high: tuple[floa
 
 
 @compiled
-def node(made: Tree, i: int) -> Triple:
+def node(made: CurveTree, i: int) -> Triple:
     """The configuration of a node."""
     return made.nodes[i, 0], made.nodes[i, 1], made.nodes[i, 2]
 
 
 @compiled
-def is_full(made: Tree) -> bool:
+def is_full(made: CurveTree) -> bool:
     """Whether there is no room for another node and one at the goal."""
     return bool(made.state[SIZE] + 2 > made.nodes.shape[0])
 
 
 @compiled
-def add(made: Tree, parent: int, at: Triple, curve: Floats, cost: float) -> int:
+def add(made: CurveTree, parent: int, at: Triple, curve: Floats, cost: float) -> int:
     """Adds a node at the end of ``curve`` [5, 2] from ``parent``, at a cost [m] from the root; its number."""
     i = put(made, parent, at, curve, cost)
     insert(made.buckets, made.nodes, i)
@@ -68,7 +68,7 @@ def add(made: Tree, parent: int, at: Triple, curve: Floats, cost: float) -> int:
 
 
 @compiled
-def put(made: Tree, parent: int, at: Triple, curve: Floats, cost: float) -> int:
+def put(made: CurveTree, parent: int, at: Triple, curve: Floats, cost: float) -> int:
     """The same, but no other node will be led on from it: it is not put into the buckets."""
     i = made.state[SIZE]
     made.state[SIZE] += 1
@@ -79,7 +79,7 @@ def put(made: Tree, parent: int, at: Triple, curve: Floats, cost: float) -> int:
 
 
 @compiled
-def _follow(made: Tree, i: int, parent: int, curve: Floats, cost: float) -> None:
+def _follow(made: CurveTree, i: int, parent: int, curve: Floats, cost: float) -> None:
     made.costs[i] = cost
     made.curves[i] = curve
     made.links[i, PARENT], made.links[i, BEFORE] = parent, -1
@@ -92,7 +92,7 @@ def _follow(made: Tree, i: int, parent: int, curve: Floats, cost: float) -> None
 
 
 @compiled
-def lead_anew(made: Tree, i: int, parent: int, curve: Floats, cost: float) -> None:
+def lead_anew(made: CurveTree, i: int, parent: int, curve: Floats, cost: float) -> None:
     """Leads to node ``i`` from another parent; what follows costs less by as much."""
     before, after = made.links[i, BEFORE], made.links[i, NEXT]
     if before >= 0:
@@ -116,7 +116,7 @@ def lead_anew(made: Tree, i: int, parent: int, curve: Floats, cost: float) -> No
         made.stack[count] = made.links[j, CHILD]
 
 
-def way_to(made: Tree, i: int) -> list[int]:
+def way_to(made: CurveTree, i: int) -> list[int]:
     """Nodes from the root to node ``i``, both included."""
     found = []
     while i >= 0:
