@@ -10,10 +10,11 @@ from uvf.maths.curves.segments import MOST, Triple, checked_configuration, moved
 from uvf.planning.costmap.costmap import Costmap
 from uvf.planning.costmap.headings import HEADINGS, STEP, heading_bin
 from uvf.planning.search.curve_table import curve_table
+from uvf.planning.search.goal_room import ENOUGH, states_before
 from uvf.planning.search.goal_field import begin, coarse_index, goal_field
 from uvf.planning.search.hybrid_expansion import Knowledge, Question, curve_to_goal, search, way_to
 from uvf.planning.search.hybrid_nodes import MOVE, make_nodes
-from uvf.planning.search.motion_primitives import SPACING, Vehicle, motion_primitives, shapes
+from uvf.planning.search.motion_primitives import SPACING, Moves, Vehicle, motion_primitives, shapes
 from uvf.planning.search.open_list import make_heap
 from uvf.planning.search.pose_check import HALF_CELL, PoseCheck, pose_check, price_at
 
@@ -28,7 +29,11 @@ TOLERANCE = 0.05
 LAST_NUMBER = 2**31 - 2 * MOST_EXPANDED * 6
 """Of a node at a query's begin; the table is cleared after it."""
 
+MOST_CRAMPED = 5_000
+"""The same where there is hardly any room to come to the goal."""
+
 NO_WAY = "no way leads to the goal: the vehicle does not fit through, or finds no room to turn"
+CRAMPED = "no way leads to the goal: driving forwards, the vehicle has no room to come to it in that heading"
 GIVEN_UP = f"no way was found with {MOST_EXPANDED} nodes; one may exist"
 
 
@@ -61,6 +66,7 @@ class HybridAStar:
         self._field, self._fringe = goal_field(self._check.factors[costs.values])
         self._nodes, self._heap = make_nodes(), make_heap()
         self._slots, self._next = np.zeros(costs.values.size * HEADINGS, dtype=np.int32), 1
+        self._queue = np.empty((ENOUGH, 3))
 
     def plan(self, start: Triple, goal: Triple) -> HybridPlan:
         """The path from ``start`` to ``goal``, x, y [m, map frame], yaw [rad]. Raises ValueError for what is not finite.
@@ -81,26 +87,33 @@ class HybridAStar:
         return (x - x0) / resolution, (y - y0) / resolution, yaw
 
     def _search(self, start: Triple, goal: Triple, margin: float) -> HybridPlan:
-        moves, columns = self._moves, self._field.columns
-        residual = start[2] - heading_bin(start[2]) * STEP
-        residual -= round(residual / (HEADINGS * STEP)) * HEADINGS * STEP
-        moves = moves._replace(shape=shapes(moves.length, moves.curvature, residual))
         penalties = (self._vehicle.reverse_penalty, self._vehicle.change_penalty, self._vehicle.non_straight_penalty)
         radius = max(self._vehicle.minimum_turning_radius / self._costs.resolution, 1.0)
         ask = Question(start, goal, radius, self._vehicle.reverses, penalties, margin, TOLERANCE, APPROACH, MOST_EXPANDED)
-        know = Knowledge(self._check, moves, curve_table(self._vehicle.reverses), self._field)
-        begin(self._field, self._fringe, coarse_index(columns, goal[0], goal[1]), coarse_index(columns, start[0], start[1]))
         if self._next > LAST_NUMBER:
             self._slots[:] = 0
             self._next = 1
+        cramped = not self._vehicle.reverses and self._is_cramped(ask)
+        if cramped:
+            ask = ask._replace(most=MOST_CRAMPED)
+        know = Knowledge(self._check, _from(self._moves, start[2]), curve_table(self._vehicle.reverses), self._field)
+        columns = self._field.columns
+        begin(self._field, self._fringe, coarse_index(columns, goal[0], goal[1]), coarse_index(columns, start[0], start[1]))
         heaps, slots = (self._heap, self._fringe), (self._slots, self._next)
         node, cost, by_curve, count, expanded, self._nodes, self._heap, self._fringe = search(know, ask, self._nodes, heaps, slots)
         self._next += count
         if node < 0:
-            return HybridPlan(None, np.empty(0), np.inf, expanded, GIVEN_UP if expanded >= MOST_EXPANDED else NO_WAY)
+            why = CRAMPED if cramped else GIVEN_UP if expanded >= MOST_EXPANDED else NO_WAY
+            return HybridPlan(None, np.empty(0), np.inf, expanded, why)
         path = self._traced(ask, node, by_curve)
         path[:, :2] = path[:, :2] * self._costs.resolution + self._costs.origin
         return HybridPlan(np.ascontiguousarray(path[:, :3]), path[:, 3].copy(), cost * self._costs.resolution, expanded)
+
+    def _is_cramped(self, ask: Question) -> bool:
+        back = self._moves._replace(length=-self._moves.length, turn=-self._moves.turn)
+        states = states_before(self._check, ask, _from(back, ask.goal[2]), (self._slots, self._next), self._queue)
+        self._next += 1
+        return states < ENOUGH
 
     def _traced(self, ask: Question, node: int, by_curve: bool) -> Floats:
         """(n, 4) x, y [cells], yaw, direction."""
@@ -129,6 +142,12 @@ class HybridAStar:
     def _pose(self, i: int) -> Triple:
         x, y, yaw = self._nodes.poses[i, :3].tolist()
         return x, y, yaw
+
+
+def _from(moves: Moves, yaw: float) -> Moves:
+    """The primitives from each bin's heading turned by as much as ``yaw`` [rad] is off its own."""
+    residual = float(np.mod(yaw + STEP / 2, STEP)) - STEP / 2
+    return moves._replace(shape=shapes(moves.length, moves.curvature, residual))
 
 
 def fault(check: PoseCheck, what: str, at: Triple, margin: float) -> str:
