@@ -13,6 +13,7 @@ from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation, cost_factors
 from uvf.planning.costmap.obstacle_layer import Observation, ObstacleLayer
 from uvf.planning.costmap.own_ground import LEAVING, with_way_out
+from uvf.planning.local.goal_checker import GoalChecker, GoalTolerances, turn_to_heading
 from uvf.planning.local.planner import STOP, Limits, LocalPlanner, Situation, State, within
 from uvf.planning.local.swept_stop import safe_share
 from uvf.planning.local.window import WindowSettings, local_window
@@ -43,6 +44,7 @@ class ControllerSettings:
     reaction: float = 0.1  # s from sight to braking
     braking: float = 4.0  # m/s^2
     angular_braking: float = 10.0  # rad/s^2
+    goal: GoalTolerances = field(default_factory=GoalTolerances)
 
 
 class Drive(Enum):
@@ -52,6 +54,7 @@ class Drive(Enum):
     NO_PATH = "there is no path"
     NO_VALID_CONTROL = "every velocity leads into an obstacle"
     STOPPED = "stopped before an obstacle"
+    ARRIVED = "the path's end is reached"
 
 
 @dataclass(frozen=True)
@@ -72,6 +75,7 @@ class LocalController:
         self.planner = planner
         self.layer = ObstacleLayer(settings.size, settings.resolution, settings.obstacle_lifetime)
         self.moving = MovingObjects()
+        self._goal = GoalChecker(settings.goal)
         self._plan_footprint = footprint.padded(settings.margin)
         self._factors = cost_factors(settings.cost_travel_multiplier, 1.0)
         self._factors[LEAVING] = LEAVING_COST
@@ -109,15 +113,20 @@ class LocalController:
         """The costmap in which the vehicle may leave a place that is too near to an obstacle."""
         return with_way_out(costs, costs.cell(pose[0], pose[1]), WAY_OUT)
 
-    def drive(self, pose: Pose2, velocity: tuple[float, float], path: Floats) -> DriveResult:
-        """Velocity for now along ``path`` (n, 2) [m, the poses' frame]; velocity: measured [m/s, rad/s]."""
+    def drive(self, pose: Pose2, velocity: tuple[float, float], path: Floats, heading: float | None = None) -> DriveResult:
+        """Velocity for now along ``path`` (n, 2) [m, the poses' frame]; velocity: measured [m/s, rad/s].
+
+        heading: [rad, the poses' frame] to turn to at the path's end; None = any.
+        """
         settings = self.settings
         if len(path) == 0:
             self._last = STOP
             return DriveResult(*STOP, Drive.NO_PATH)
+        state = self._ahead(pose, velocity)
+        if self._goal.at_place(state, (float(path[-1, 0]), float(path[-1, 1]))):
+            return self._at_goal(state, velocity, heading)
         costs = self.leaving(self.costmap(settings.window.size + 1.0), pose)
         grids = local_window(costs, (pose[0], pose[1]), path, self._factors, settings.window)
-        state = self._ahead(pose, velocity)
         wanted = self.planner.command(Situation(state, grids, path, self.moving.moving()))
         if wanted is None:
             self._last = within(self.limits, state, STOP, settings.period)
@@ -126,6 +135,18 @@ class LocalController:
         self._last = self.made_safe(wanted, velocity)
         stopped = self._last == STOP and wanted != STOP
         return DriveResult(*self._last, Drive.STOPPED if stopped else Drive.DRIVING)
+
+    def _at_goal(self, state: State, velocity: tuple[float, float], heading: float | None) -> DriveResult:
+        """Stands, or turns to the heading where that is not the wanted one yet."""
+        if there := heading is None or self._goal.has_heading(state, heading):
+            wanted = STOP
+        else:
+            wanted = turn_to_heading(state, heading, self.limits)
+        wanted = within(self.limits, state, wanted, self.settings.period)
+        self._last = self.made_safe(wanted, velocity)
+        if self._last == STOP and wanted != STOP:
+            return DriveResult(*STOP, Drive.STOPPED)
+        return DriveResult(*self._last, Drive.ARRIVED if there else Drive.DRIVING)
 
     def made_safe(self, wanted: tuple[float, float], velocity: tuple[float, float]) -> tuple[float, float]:
         """The wanted velocity, slowed so that the vehicle can stop before everything that the last scan shows.
