@@ -19,7 +19,7 @@ from benchmarks.planning.barn.jackal import JACKAL, Drive
 from benchmarks.planning.barn.movers import Movers, Track, movers_of
 from benchmarks.planning.barn.odometry import Odometry
 from benchmarks.planning.barn.simulation import DT, LATE, READ, STOP, Surroundings
-from benchmarks.planning.barn.stack import MPPI_LIMITS, SIZE, Beams
+from benchmarks.planning.barn.stack import SIZE, STACK_LIMITS, Beams
 from benchmarks.planning.barn.worlds import World
 from launch.commands.bench import Figures
 from launch.commands.bench_selection import Selection
@@ -134,8 +134,8 @@ class _Trial:
         self._drive, self._odometry = Drive(case.world.start, DT), Odometry(READ * DT, odometry)
         self._contacts = Contacts(case.world, JACKAL)
         footprint = RobotFootprint.polygon(JACKAL.footprint)
-        planner = Mppi(MPPI_LIMITS, footprint, MppiSettings(), seed)
-        self._controller = LocalController(footprint, MPPI_LIMITS, planner, ControllerSettings(size=SIZE))
+        planner = Mppi(STACK_LIMITS, footprint, MppiSettings(), seed)
+        self._controller = LocalController(footprint, STACK_LIMITS, planner, ControllerSettings(size=SIZE))
         self._executor = Executor(self._controller)
         settings = NavigatorSettings(replan_period=0.5, circumscribed_radius=footprint.circumscribed_radius)
         self._navigator = Navigator(self._source(), settings)

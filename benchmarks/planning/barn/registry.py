@@ -1,17 +1,19 @@
 """The controllers of the benchmark by their names."""
 
 from collections.abc import Callable
+from functools import partial
 
 from benchmarks.planning.barn import checks
 from benchmarks.planning.barn.controllers import Briefing, Controller
-from benchmarks.planning.barn.stack import dwa_stack, mppi_stack
+from benchmarks.planning.barn.stack import move_base_stack, stack_of
 from benchmarks.planning.barn.worlds import World
 from uvf.models.yaml_data import BadInput, nearest
+from uvf.planning.local.planners import LOCAL_PLANNERS
 
 ControllerMaker = Callable[[Briefing], Controller]
 
-CONTROLLERS: dict[str, ControllerMaker] = {"mppi": mppi_stack, "dwa": dwa_stack}
-"""Navigation stacks by name; the first one is the default."""
+CONTROLLERS: dict[str, ControllerMaker] = {name: partial(stack_of, name) for name in LOCAL_PLANNERS} | {"move_base": move_base_stack}
+"""Navigation stacks by name, one of each local planner; the first one is the default."""
 
 CHECKS: dict[str, ControllerMaker] = {
     "path": lambda briefing: checks.PathFollower(_told(briefing)),

@@ -15,8 +15,8 @@ from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.local.controller import ControllerSettings, LocalController
 from uvf.planning.local.dwa import Dwa, DwaSettings
-from uvf.planning.local.mppi import Mppi, MppiSettings
 from uvf.planning.local.planner import Limits
+from uvf.planning.local.planners import make_local_planner
 from uvf.planning.navigation.execution import Executor
 from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings
 from uvf.planning.navigation.progress import ProgressSettings
@@ -26,7 +26,9 @@ Floats = NDArray[np.float64]
 
 SIZE = 24.0  # m, of the window that paths are planned over
 REPLAN = 0.2  # s
-MPPI_LIMITS = Limits(min_speed=-0.5, max_speed=1.4, max_turn_rate=2.0, acceleration=2.5, angular_acceleration=6.0, lateral_acceleration=2.0)
+STACK_LIMITS = Limits(
+    min_speed=-0.5, max_speed=1.4, max_turn_rate=2.0, acceleration=2.5, angular_acceleration=6.0, lateral_acceleration=2.0
+)
 DWA_LIMITS = Limits(0.1, 0.5, 1.57, 10.0, 20.0, 10.0)
 MOVE_BASE_HALF, MOVE_BASE_PADDING = (0.21, 0.165), 0.1  # m
 """What move_base has on the Jackal: jackal_helper/configs/params of the challenge."""
@@ -80,18 +82,17 @@ class MaplessStack:
         return self.executor.step(t, odom_from_base, (velocity.linear, velocity.angular), directive)
 
 
-def mppi_stack(briefing: Briefing) -> MaplessStack:
-    """The default stack."""
-    footprint = RobotFootprint.polygon(briefing.robot.footprint)
-    settings = ControllerSettings(size=SIZE)
-    planner = Mppi(MPPI_LIMITS, footprint, MppiSettings(), briefing.seed)
-    return MaplessStack(briefing.robot.scanner, LocalController(footprint, MPPI_LIMITS, planner, settings))
-
-
-def dwa_stack(briefing: Briefing) -> MaplessStack:
+def move_base_stack(briefing: Briefing) -> MaplessStack:
     """The dynamic window approach at 0.5 m/s with the challenge's parameters of move_base on the Jackal, but without its recoveries."""
     x, y = (half + MOVE_BASE_PADDING for half in MOVE_BASE_HALF)
     footprint = RobotFootprint.polygon(np.array(((-x, -y), (x, -y), (x, y), (-x, y))))
     settings = ControllerSettings(size=SIZE, inflation=Inflation(0.3, 10.0), margin=0.0, obstacle_range=2.5)
     planner = Dwa(DWA_LIMITS, footprint, DwaSettings())
     return MaplessStack(briefing.robot.scanner, LocalController(footprint, DWA_LIMITS, planner, settings))
+
+
+def stack_of(name: str, briefing: Briefing) -> MaplessStack:
+    """The stack with the local planner of a name as it is by default."""
+    footprint = RobotFootprint.polygon(briefing.robot.footprint)
+    planner = make_local_planner(name, STACK_LIMITS, footprint, briefing.seed)
+    return MaplessStack(briefing.robot.scanner, LocalController(footprint, STACK_LIMITS, planner, ControllerSettings(size=SIZE)))

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from enum import Enum
-from math import atan2, cos, hypot, sin
+from math import cos, hypot, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation, cost_factors
 from uvf.planning.costmap.obstacle_layer import Observation, ObstacleLayer
 from uvf.planning.costmap.own_ground import LEAVING, with_way_out
+from uvf.planning.local.goal_checker import GoalChecker, GoalTolerances, turn_to_heading
 from uvf.planning.local.planner import STOP, Limits, LocalPlanner, Situation, State, within
 from uvf.planning.local.swept_stop import safe_share
 from uvf.planning.local.window import WindowSettings, local_window
@@ -24,9 +25,6 @@ Floats = NDArray[np.float64]
 LEAVING_COST = 30.0
 """Factor on the cost of ground within the inscribed radius of an obstacle, when it has to be left."""
 NEAR = 4.0  # m, farther points cannot be reached before the next scan
-TURN_FROM = 2.2  # rad: with its path behind it, a vehicle that is slow turns on the spot first (Nav2: rotation shim)
-SLOW = 0.2  # m/s
-AHEAD = 0.6  # m along the path to where its direction is taken
 REMEMBERED = 1.0  # m within which the stop heeds obstacles that are out of view
 ROOM_WINDOW = 0.5  # m more than the footprint in which room to turn is looked for
 TURN_COUNTS = 0.3  # m/rad
@@ -51,6 +49,7 @@ class ControllerSettings:
     reaction: float = 0.1  # s from sight to braking
     braking: float = 4.0  # m/s^2
     angular_braking: float = 10.0  # rad/s^2
+    goal: GoalTolerances = field(default_factory=GoalTolerances)
 
 
 class Drive(Enum):
@@ -60,6 +59,7 @@ class Drive(Enum):
     NO_PATH = "there is no path"
     NO_VALID_CONTROL = "every velocity leads into an obstacle"
     STOPPED = "stopped before an obstacle"
+    ARRIVED = "the path's end is reached"
 
 
 @dataclass(frozen=True)
@@ -80,6 +80,7 @@ class LocalController:
         self.planner = planner
         self.layer = ObstacleLayer(settings.size, settings.resolution, settings.obstacle_memory)
         self.moving = MovingObjects()
+        self._goal = GoalChecker(settings.goal)
         self._plan_footprint = footprint.padded(settings.margin)
         self._factors = cost_factors(settings.cost_travel_multiplier, 1.0)
         self._factors[LEAVING] = LEAVING_COST
@@ -134,26 +135,24 @@ class LocalController:
         """The costmap in which the vehicle may leave a place that is too near to an obstacle."""
         return with_way_out(costs, costs.cell(pose[0], pose[1]), WAY_OUT)
 
-    def drive(self, pose: Pose2, velocity: tuple[float, float], path: Floats) -> DriveResult:
-        """Velocity for now along ``path`` (n, 2) [m, the poses' frame]; velocity: measured [m/s, rad/s]."""
+    def drive(self, pose: Pose2, velocity: tuple[float, float], path: Floats, heading: float | None = None) -> DriveResult:
+        """Velocity for now along ``path`` (n, 2) [m, the poses' frame]; velocity: measured [m/s, rad/s].
+
+        heading: [rad, the poses' frame] to turn to at the path's end; None = any.
+        """
         settings = self.settings
         if len(path) == 0:
             self._last = STOP
             return DriveResult(*STOP, Drive.NO_PATH)
+        state = self._ahead(pose, velocity)
+        if self._goal.at_place(state, (float(path[-1, 0]), float(path[-1, 1]))):
+            return self._at_goal(state, velocity, heading)
         costs = self.leaving(self.costmap(settings.window.size + 1.0), pose)
         grids = local_window(costs, (pose[0], pose[1]), path, self._factors, settings.window)
-        state = self._ahead(pose, velocity)
-        bearing = _bearing(pose, path)
-        if abs(bearing) > TURN_FROM and abs(velocity[0]) < SLOW and self.has_room_to_turn(pose):
-            rate = min(abs(bearing), self.limits.max_turn_rate)
-            return DriveResult(*self.move(pose, velocity, (0.0, rate if bearing > 0.0 else -rate)), Drive.DRIVING)
         wanted = self.planner.command(Situation(state, grids, path, self.moving.moving()))
         if wanted is None:
-            self._last = within(self.limits, state, STOP, settings.period)
-            return DriveResult(*self.made_safe(self._last, velocity), Drive.NO_VALID_CONTROL)
-        wanted = within(self.limits, state, wanted, settings.period)
-        self._last = self.made_safe(wanted, velocity)
-        stopped = self._last == STOP and wanted != STOP
+            return DriveResult(*self._reach(state, velocity, STOP), Drive.NO_VALID_CONTROL)
+        stopped = self._reach(state, velocity, wanted) == STOP and wanted != STOP
         return DriveResult(*self._last, Drive.STOPPED if stopped else Drive.DRIVING)
 
     def halt(self) -> tuple[float, float]:
@@ -162,10 +161,23 @@ class LocalController:
         return STOP
 
     def move(self, pose: Pose2, velocity: tuple[float, float], wanted: tuple[float, float]) -> tuple[float, float]:
-        """A wanted velocity (m/s, rad/s) within the limits of acceleration, before which the stop has the last word."""
-        reached = within(self.limits, self._ahead(pose, velocity), wanted, self.settings.period)
+        """A wanted velocity (m/s, rad/s) within the limits of acceleration; the stop has the last word."""
+        return self._reach(self._ahead(pose, velocity), velocity, wanted)
+
+    def _reach(self, state: State, velocity: tuple[float, float], wanted: tuple[float, float]) -> tuple[float, float]:
+        reached = within(self.limits, state, wanted, self.settings.period)
         self._last = self.made_safe(reached, velocity)
         return self._last
+
+    def _at_goal(self, state: State, velocity: tuple[float, float], heading: float | None) -> DriveResult:
+        """Stands, or turns to the heading where that is not the wanted one yet."""
+        if there := heading is None or self._goal.has_heading(state, heading):
+            wanted = STOP
+        else:
+            wanted = turn_to_heading(state, heading, self.limits)
+        if self._reach(state, velocity, wanted) == STOP and wanted != STOP:
+            return DriveResult(*STOP, Drive.STOPPED)
+        return DriveResult(*self._last, Drive.ARRIVED if there else Drive.DRIVING)
 
     def made_safe(self, wanted: tuple[float, float], velocity: tuple[float, float]) -> tuple[float, float]:
         """The wanted velocity, slowed so that the vehicle can stop before everything that the last scan shows or that is
@@ -190,12 +202,3 @@ class LocalController:
         w = min(max(self._last[1], velocity[1] - dw), velocity[1] + dw)
         middle = pose[2] + w * d / 2
         return State(pose[0] + v * d * cos(middle), pose[1] + v * d * sin(middle), pose[2] + w * d, v, w)
-
-
-def _bearing(pose: Pose2, path: Floats) -> float:
-    """Direction [rad, relative to the vehicle's heading] of the path a little ahead of the point that is nearest to the vehicle."""
-    distances = np.hypot(path[:, 0] - pose[0], path[:, 1] - pose[1])
-    ahead = path[int(np.argmin(distances)) :]
-    farther = np.flatnonzero(np.hypot(ahead[:, 0] - pose[0], ahead[:, 1] - pose[1]) >= AHEAD)
-    x, y = ahead[farther[0] if len(farther) else -1]
-    return wrap(atan2(y - pose[1], x - pose[0]) - pose[2])

@@ -18,9 +18,6 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
 
-HEED = 0.5  # m from the outline to a moving obstacle, within which its distance is computed
-
-
 @dataclass(frozen=True)
 class DwaSettings:
     """Parameters of base_local_planner / dwa_local_planner under their names."""
@@ -54,7 +51,7 @@ class Dwa:
         steps = max(round(s.sim_time / s.step), 1)
         commands = np.ascontiguousarray(np.repeat(pairs[:, None, :], steps, axis=1).astype(np.float32))
         found = np.empty((len(pairs), FEATURES), dtype=np.float32)
-        others = Others(now.obstacles, *self._outline, HEED, 0.0)
+        others = Others(now.obstacles, *self._outline)
         roll_out(now.grids, state, commands, (s.step, self._limits), others, found)
         allowed = (found[:, rollout.COLLIDED] == 0.0) & (found[:, rollout.TO_GO] < UNREACHED / 2)
         if not allowed.any():

@@ -43,7 +43,9 @@ class MppiSettings:
     near_weight: float = 8.0
     fast_weight: float = 6.0
     close_weight: float = 10.0
-    heed: float = 0.5  # m to a moving obstacle from which it matters
+    heed: float = 1.5  # m to a moving obstacle from which it matters
+    doubt: tuple[float, float] = (0.1, 0.25)
+    """m, m/s: by how much a moving obstacle may be elsewhere than it is taken to be, now and the farther ahead one looks."""
     growth: float = 0.1  # m/s by which a moving obstacle is taken to be wider the farther ahead one looks
 
 
@@ -71,7 +73,7 @@ class Mppi:
     def command(self, now: Situation) -> tuple[float, float] | None:
         """Velocity (m/s, rad/s) for now; None where every future ends in a contact at once."""
         settings, grids, start = self.settings, now.grids, now.state
-        others = Others(now.obstacles, *self._outline, settings.heed, settings.growth)
+        others = Others(now.obstacles, *self._outline, settings.heed, settings.growth, settings.doubt)
         offset = int(self._rng.integers(0, (POOL - 1) * settings.samples + 1))
         _draw(self._plan, self._noise, offset, self._steady, self._commands)
         _clip(self._commands, self._limits)
@@ -89,7 +91,8 @@ class Mppi:
         self.best = self._found[0].copy()
         speed, turn = float(self._plan[0, 0]), float(self._plan[0, 1])
         self._plan[:-1] = self._plan[1:]
-        return None if self.best[rollout.COLLIDED] > AT_ONCE else (speed, turn)
+        stuck = self.best[rollout.COLLIDED] > AT_ONCE and not len(now.obstacles)  # what moves may yet pass by
+        return None if stuck else (speed, turn)
 
     @property
     def _weights(self) -> Floats32:

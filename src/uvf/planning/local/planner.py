@@ -62,7 +62,8 @@ class LocalPlanner(Protocol):
 def within(limits: Limits, now: State, wanted: tuple[float, float], dt: float) -> tuple[float, float]:
     """The wanted velocity (m/s, rad/s) as far as it can be reached within ``dt`` [s], and driven without sliding."""
     dv, dw = limits.acceleration * dt, limits.angular_acceleration * dt
-    speed = min(max(wanted[0], now.speed - dv, limits.min_speed), now.speed + dv, limits.max_speed)
+    slowest = min(limits.min_speed, 0.0)  # who may not drive slowly may still stop
+    speed = min(max(wanted[0], now.speed - dv, slowest), now.speed + dv, limits.max_speed)
     most = min(limits.max_turn_rate, limits.lateral_acceleration / max(abs(speed), 1e-3))
     turn = min(max(wanted[1], now.turn_rate - dw), now.turn_rate + dw)
     return speed, min(max(turn, -most), most)

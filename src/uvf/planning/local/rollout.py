@@ -7,12 +7,15 @@ from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
 from uvf.planning.costmap.headings import HEADINGS, STEP
-from uvf.planning.costmap.inflation import NO_INFORMATION
 from uvf.planning.local.planner import Limits, State
-from uvf.planning.local.window import Grids
+from uvf.planning.local.window import Bits, Grids
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Motion = tuple[float, float, float, float, float, float, float]
+"""x, y [m], yaw [rad], speed [m/s], turn rate [rad/s], cosine and sine of yaw."""
+
+UNSEEN = 4.0
 
 
 class Others(NamedTuple):
@@ -23,15 +26,17 @@ class Others(NamedTuple):
     sides: Floats
     """(n, 3) of the footprint, as ``RobotFootprint.sides`` has them."""
     circumscribed_radius: float  # m, of the footprint
-    heed: float  # m from the outline, within which an obstacle matters
-    growth: float  # m/s by which an obstacle is taken to be wider the farther ahead one looks
+    heed: float = 0.5  # m from the outline, within which an obstacle matters
+    growth: float = 0.0  # m/s by which an obstacle is taken to be wider the farther ahead one looks
+    doubt: tuple[float, float] = (0.1, 0.25)
+    """m, m/s: distance over which nearness falls to 1/e, now, and by how much more the farther ahead one looks."""
 
 
 FEATURES = 11
 COLLIDED, COST, WORST, TO_GO, MEAN_TO_GO, OFF_PATH, REVERSED, TURNED, NEAR, FAST, CLOSE = range(FEATURES)
 """Columns of what a rollout finds: share of the horizon [0..1] that comes after the first contact (0: none); mean cost [0..1]; largest
-cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards [m]; mean turn rate
-[rad/s]; mean nearness to moving obstacles [0..1, 1 = contact]; mean cost times the square of the share of the largest speed [0..1];
+cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards [m], ``UNSEEN`` times
+as much over unknown ground; mean turn rate [rad/s]; mean nearness to moving obstacles [0..1, 1 = contact, exponential]; mean cost times the square of the share of the largest speed [0..1];
 share of the horizon within the soft margin of an obstacle, weighed by 0.3 and the share of the largest speed."""
 
 
@@ -68,102 +73,140 @@ def _gap(sides: Floats, x: float, y: float, cosine: float, sine: float) -> float
 
 
 @compiled
-def _is_unseen(grids: Grids, x: float, y: float) -> bool:
-    """Whether a place in the window is unknown."""
+def _heading_bit(bits: Bits, r: int, c: int, yaw: float) -> bool:
+    """The bit of a heading [rad] in a cell."""
+    heading = int(np.floor(yaw / STEP + 0.5)) & (HEADINGS - 1)
+    return bool((bits[r, c] >> np.uint64(heading)) & np.uint64(1))
+
+
+@compiled
+def _cell(grids: Grids, x: float, y: float) -> tuple[int, int]:
+    """Row and column of a place [m] in the window; (-1, -1) where it lies outside."""
     r, c = int(np.floor((y - grids.frame[1]) / grids.frame[2])), int(np.floor((x - grids.frame[0]) / grids.frame[2]))
-    return bool(0 <= r < grids.values.shape[0] and 0 <= c < grids.values.shape[1] and grids.values[r, c] == NO_INFORMATION)
+    if 0 <= r < grids.values.shape[0] and 0 <= c < grids.values.shape[1]:
+        return r, c
+    return -1, -1
 
 
 @compiled
 def _is_blocked(grids: Grids, x: float, y: float, yaw: float) -> bool:
     """Whether the footprint touches an obstacle at a pose."""
-    r, c = int(np.floor((y - grids.frame[1]) / grids.frame[2])), int(np.floor((x - grids.frame[0]) / grids.frame[2]))
-    if not (0 <= r < grids.values.shape[0] and 0 <= c < grids.values.shape[1]):
-        return False
-    heading = int(np.floor(yaw / STEP + 0.5)) & (HEADINGS - 1)
-    return bool((grids.blocked[r, c] >> np.uint64(heading)) & np.uint64(1))
+    r, c = _cell(grids, x, y)
+    return r >= 0 and _heading_bit(grids.blocked, r, c, yaw)
 
 
 @compiled
-def roll_out(
+def _driven(motion: Motion, command: Floats32, dt: float, limits: Limits) -> Motion:
+    """The motion a step later, with the command (2,) followed as fast as the limits allow."""
+    x, y, yaw, speed, turn, cosine, sine = motion
+    wanted = min(max(float(command[0]), limits.min_speed), limits.max_speed)
+    speed += min(max(wanted - speed, -limits.acceleration * dt), limits.acceleration * dt)
+    most = min(limits.max_turn_rate, limits.lateral_acceleration / max(abs(speed), 1e-3))
+    wanted = min(max(float(command[1]), -most), most)
+    turn += min(max(wanted - turn, -limits.angular_acceleration * dt), limits.angular_acceleration * dt)
+    half = 0.5 * turn * dt
+    cosine, sine = _turned(cosine, sine, half)
+    x += speed * dt * cosine
+    y += speed * dt * sine
+    cosine, sine = _turned(cosine, sine, half)
+    return x, y, yaw + turn * dt, speed, turn, cosine, sine
+
+
+@compiled
+def _predicted(state: State, horizon: int, step: tuple[float, Limits], others: Others) -> tuple[Floats, NDArray[np.int64]]:
+    """(horizon, m, 3) x, y, radius [m] of the obstacles that the vehicle may come near, step by step, and how many they are."""
+    dt, limits = step
+    obstacles = others.obstacles
+    discs = np.empty((horizon, obstacles.shape[0], 3))
+    counts = np.zeros(horizon, dtype=np.int64)
+    fastest = max(abs(limits.min_speed), abs(limits.max_speed), abs(state.speed))
+    for i in range(horizon):
+        ahead = (i + 1) * dt
+        for m in range(obstacles.shape[0]):
+            x, y = obstacles[m, 0] + ahead * obstacles[m, 2], obstacles[m, 1] + ahead * obstacles[m, 3]
+            radius = obstacles[m, 4] + others.growth * ahead
+            reach = others.circumscribed_radius + radius + others.heed + fastest * ahead
+            if (x - state.x) ** 2 + (y - state.y) ** 2 < reach * reach:
+                discs[i, counts[i], 0], discs[i, counts[i], 1], discs[i, counts[i], 2] = x, y, radius
+                counts[i] += 1
+    return discs, counts
+
+
+@compiled
+def _closest(discs: Floats, count: int, others: Others, motion: Motion) -> float:
+    """Distance [m] from the outline to the nearest of the discs, ``others.heed`` at most."""
+    x, y, _, _, _, cosine, sine = motion
+    closest = others.heed
+    for m in range(count):
+        dx, dy = discs[m, 0] - x, discs[m, 1] - y
+        reach = others.circumscribed_radius + discs[m, 2] + closest
+        if dx * dx + dy * dy < reach * reach:
+            closest = min(closest, _gap(others.sides, dx, dy, cosine, sine) - discs[m, 2])
+    return closest
+
+
+@compiled
+def _roll(
     grids: Grids,
     state: State,
     commands: Floats32,
     step: tuple[float, Limits],
-    others: Others,
+    moving: tuple[Others, Floats, NDArray[np.int64]],
     out: Floats32,
 ) -> None:
+    """One rollout: fills ``out`` (FEATURES,) for commands (n, 2), among discs as ``_predicted`` gives them."""
+    dt, limits = step
+    others, discs, counts = moving
+    x0, y0, resolution = grids.frame
+    horizon = commands.shape[0]
+    cost = worst = mean_to_go = off_path = back = turned = near = collided = fast = close = to_go = 0.0
+    motion = state.x, state.y, state.yaw, state.speed, state.turn_rate, np.cos(state.yaw), np.sin(state.yaw)
+    inside = _is_blocked(grids, state.x, state.y, state.yaw)
+    for i in range(horizon):
+        motion = _driven(motion, commands[i], dt, limits)
+        x, y, yaw, speed, turn, cosine, sine = motion
+        share = speed / limits.max_speed
+        r, c = _cell(grids, x, y)
+        if r >= 0:
+            if not _heading_bit(grids.blocked, r, c, yaw):
+                inside = False
+                close += 0.3 + abs(share) if _heading_bit(grids.close, r, c, yaw) else 0.0
+            elif inside:  # it was there from the start: the sooner it is out the better
+                close += 1.3
+            else:
+                collided = 1.0 - i / horizon
+        to_go = _sample(grids.to_go, (x - x0) / resolution, (y - y0) / resolution)
+        if counts[i] > 0:
+            closest = _closest(discs[i], counts[i], others, motion)
+            if closest <= 0.0:
+                collided = max(collided, 1.0 - i / horizon)
+            if closest < others.heed:
+                near += np.exp(-max(closest, 0.0) / (others.doubt[0] + others.doubt[1] * (i + 1) * dt))
+        if collided > 0.0:
+            mean_to_go += (horizon - i) * to_go
+            break
+        if r >= 0:
+            value = float(grids.values[r, c])
+            cost, fast, worst = cost + value, fast + value * share * share, max(worst, value)
+            off_path += grids.off_path[r, c]
+        mean_to_go += to_go
+        turned += abs(turn)
+        if speed < 0.0:
+            r, c = _cell(grids, x - others.circumscribed_radius * cosine, y - others.circumscribed_radius * sine)
+            back -= speed * dt * (1.0 if r >= 0 and grids.seen[r, c] else UNSEEN)
+    out[COLLIDED], out[COST], out[WORST] = collided, cost / (252.0 * horizon), worst
+    out[TO_GO], out[MEAN_TO_GO], out[OFF_PATH] = to_go, mean_to_go / horizon, off_path / horizon
+    out[REVERSED], out[TURNED], out[NEAR] = back, turned / horizon, near / horizon
+    out[FAST], out[CLOSE] = fast / (252.0 * horizon), close / horizon
+
+
+@compiled
+def roll_out(grids: Grids, state: State, commands: Floats32, step: tuple[float, Limits], others: Others, out: Floats32) -> None:
     """Fills ``out`` (k, FEATURES) for the commands (k, n, 2) of speed [m/s] and turn rate [rad/s], each held for a step.
 
     state: x, y, yaw, speed, turn rate in the window's frame; step: (duration [s], limits: the vehicle follows commands as fast as they
-    allow). After a contact a rollout stands still; a vehicle
-    that touches something from the start may get out of it.
+    allow). After a contact a rollout stands still; a vehicle that touches something from the start may get out of it.
     """
-    dt, limits = step
-    obstacles, heed = others.obstacles, others.heed
-    x0, y0, resolution = grids.frame
-    rows, columns = grids.values.shape
-    horizon = commands.shape[1]
-    dv, dw = limits.acceleration * dt, limits.angular_acceleration * dt
+    discs, counts = _predicted(state, commands.shape[1], step, others)
     for k in range(commands.shape[0]):
-        x, y, yaw, speed, turn = state
-        cost = worst = mean_to_go = off_path = back = turned = near = collided = fast = close = 0.0
-        to_go, cosine, sine = 0.0, np.cos(yaw), np.sin(yaw)
-        inside = _is_blocked(grids, x, y, yaw)
-        for i in range(horizon):
-            wanted = min(max(float(commands[k, i, 0]), limits.min_speed), limits.max_speed)
-            speed += min(max(wanted - speed, -dv), dv)
-            most = min(limits.max_turn_rate, limits.lateral_acceleration / max(abs(speed), 1e-3))
-            wanted = min(max(float(commands[k, i, 1]), -most), most)
-            turn += min(max(wanted - turn, -dw), dw)
-            half = 0.5 * turn * dt
-            cosine, sine = _turned(cosine, sine, half)
-            x += speed * dt * cosine
-            y += speed * dt * sine
-            cosine, sine = _turned(cosine, sine, half)
-            yaw += turn * dt
-            in_x, in_y = (x - x0) / resolution, (y - y0) / resolution
-            r, c = int(np.floor(in_y)), int(np.floor(in_x))
-            value, beside = 0, 0.0
-            if 0 <= r < rows and 0 <= c < columns:
-                value, beside = int(grids.values[r, c]), float(grids.off_path[r, c])
-                if value == NO_INFORMATION:
-                    value = 0
-                if speed < 0.0 and _is_unseen(grids, x - others.circumscribed_radius * cosine, y - others.circumscribed_radius * sine):
-                    collided = 1.0 - i / horizon
-                heading = int(np.floor(yaw / STEP + 0.5)) & (HEADINGS - 1)
-                if (grids.blocked[r, c] >> np.uint64(heading)) & np.uint64(1):
-                    if inside:  # it was there from the start: the sooner it is out the better
-                        close += 1.3
-                    else:
-                        collided = 1.0 - i / horizon
-                else:
-                    inside = False
-                    if (grids.close[r, c] >> np.uint64(heading)) & np.uint64(1):
-                        close += 0.3 + abs(speed) / limits.max_speed
-            to_go = _sample(grids.to_go, in_x, in_y)
-            if obstacles.shape[0] > 0:
-                ahead, closest = (i + 1) * dt, heed
-                for m in range(obstacles.shape[0]):
-                    dx, dy = obstacles[m, 0] + ahead * obstacles[m, 2] - x, obstacles[m, 1] + ahead * obstacles[m, 3] - y
-                    reach = others.circumscribed_radius + obstacles[m, 4] + others.growth * ahead + closest
-                    if dx * dx + dy * dy < reach * reach:
-                        closest = min(closest, _gap(others.sides, dx, dy, cosine, sine) - obstacles[m, 4] - others.growth * ahead)
-                if closest <= 0.0:
-                    collided = max(collided, 1.0 - i / horizon)
-                near += (heed - max(closest, 0.0)) / heed
-            if collided > 0.0:
-                left = horizon - i
-                mean_to_go += left * to_go
-                break
-            cost += value
-            fast += value * (speed / limits.max_speed) ** 2
-            worst = max(worst, value)
-            mean_to_go += to_go
-            off_path += beside
-            back += max(-speed, 0.0) * dt
-            turned += abs(turn)
-        out[k, COLLIDED], out[k, COST], out[k, WORST] = collided, cost / (252.0 * horizon), worst
-        out[k, TO_GO], out[k, MEAN_TO_GO], out[k, OFF_PATH] = to_go, mean_to_go / horizon, off_path / horizon
-        out[k, REVERSED], out[k, TURNED], out[k, NEAR] = back, turned / horizon, near / horizon
-        out[k, FAST], out[k, CLOSE] = fast / (252.0 * horizon), close / horizon
+        _roll(grids, state, commands[k], step, (others, discs, counts), out[k])

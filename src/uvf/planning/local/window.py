@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from uvf.maths.grids import distance_field
 from uvf.planning.costmap.costmap import Costmap
 from uvf.planning.costmap.headings import blocked_headings
-from uvf.planning.costmap.inflation import LETHAL
+from uvf.planning.costmap.inflation import LETHAL, NO_INFORMATION
 from uvf.planning.search.grid_search import GridSearch
 
 Bytes = NDArray[np.uint8]
+Mask = NDArray[np.bool_]
 Bits = NDArray[np.uint64]
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -27,7 +28,9 @@ class Grids(NamedTuple):
     """Arrays (rows, columns) that rollouts look up; the first is the vehicle's window, the others have its shape."""
 
     values: Bytes
-    """0 to 254, 255 = unknown, which counts as free ahead of the vehicle, and is not backed into."""
+    """0 to 254; unknown ground counts as free."""
+    seen: Mask
+    """Whether a cell is known."""
     blocked: Bits
     """Bit ``heading_bin(yaw)`` set: the footprint touches an obstacle."""
     close: Bits
@@ -74,15 +77,16 @@ def local_window(costs: Costmap, here: Point, path: Floats, factors: Floats, set
         marks = np.zeros(values.shape, dtype=np.bool_)
         marks[cells[inside, 0], cells[inside, 1]] = True
         off_path = distance_field(marks) * costs.resolution
-    occupied = values == LETHAL
+    occupied, seen = values == LETHAL, values != NO_INFORMATION
+    values[~seen] = 0
     blocked, close = (
         blocked_headings(occupied, costs.resolution, footprint)
         for footprint in (costs.footprint, costs.footprint.padded(settings.soft_margin))
     )
-    return Grids(values, blocked, close, to_go.astype(np.float32), off_path.astype(np.float32), (*corner, costs.resolution))
+    return Grids(values, seen, blocked, close, to_go.astype(np.float32), off_path.astype(np.float32), (*corner, costs.resolution))
 
 
-def _seed(values: Bytes, cells: NDArray[np.int64], inside: NDArray[np.bool_], factors: Floats) -> int:
+def _seed(values: Bytes, cells: NDArray[np.int64], inside: Mask, factors: Floats) -> int:
     """Index of the last point of the path that lies in the window, before it leaves it for the first time, and is passable; -1: none."""
     first = np.flatnonzero(inside)
     if not len(first):

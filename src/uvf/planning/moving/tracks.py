@@ -13,6 +13,8 @@ Mask = NDArray[np.bool_]
 Point = tuple[float, float]
 
 NEVER = 1e6
+BESIDE = 0.15
+"""m beyond the radius of a thing that moves, within which what is seen is part of it."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class TrackSettings:
     least_hits: int = 4  # scans until it is believed
     coast: float = 0.3  # s that a thing is kept where it should be seen and is not
     coast_hidden: float = 2.0  # s that it is kept where it cannot be seen
-    farthest: float = 12.0  # m
+    farthest: float = 20.0  # m
 
 
 @dataclass
@@ -90,6 +92,8 @@ class MovingObjects:
             moving[int(disc[LABEL])] = track.is_moving(self.settings)
         mask: Mask = np.zeros(len(ranges), dtype=np.bool_)
         mask[labels >= 0] = moving[labels[labels >= 0]]
+        for x, y, _, _, radius in self.moving():  # parts of them that count as other things, or as parts of such
+            mask |= (ranges > 0.0) & ((points[:, 0] - x) ** 2 + (points[:, 1] - y) ** 2 < (radius + BESIDE) ** 2)
         return mask
 
     def moving(self) -> Floats:

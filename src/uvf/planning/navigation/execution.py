@@ -30,7 +30,7 @@ class Executor:
         if directive.number != self.report.number:
             self._begin(pose, directive)
         if directive.action == Action.FOLLOW:
-            result = self.controller.drive(pose, velocity, directive.path)
+            result = self.controller.drive(pose, velocity, directive.path, directive.heading)
             self.report = Report(directive.number, result.how)
             return result.speed, result.turn_rate
         if directive.action == Action.STOP:

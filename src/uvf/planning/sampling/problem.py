@@ -22,7 +22,6 @@ STEP = 0.08  # of the field's diagonal
 TURNS = 3.0  # of the turning radius
 NARROW = 2.0
 """Added to the cost of a cell of the guide, at the very edge of what the body fits through."""
-BLOCKED = 255  # value of an impassable cell
 SMOOTH = 6  # cells over which the guide's heading is taken
 
 

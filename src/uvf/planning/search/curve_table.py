@@ -56,4 +56,3 @@ def curve_length(table: Table, here: Triple, goal: Triple, radius: float) -> flo
         found: float = table[i, j, heading_bin(turn)] * radius
         return found
     return sqrt(dx * dx + dy * dy)
-

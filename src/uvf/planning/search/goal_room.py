@@ -42,7 +42,10 @@ def states_before(check: PoseCheck, ask: Question, back: Moves, slots: tuple[Slo
                 continue
             free = True
             for i in range(last + 1):
-                if price_at(check, x0 + back.shape[k, move, i, 0], y0 + back.shape[k, move, i, 1], back.shape[k, move, i, 2], ask.margin) < 0.0:
+                if (
+                    price_at(check, x0 + back.shape[k, move, i, 0], y0 + back.shape[k, move, i, 1], back.shape[k, move, i, 2], ask.margin)
+                    < 0.0
+                ):
                     free = False
                     break
             if free:

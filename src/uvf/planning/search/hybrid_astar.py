@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from uvf.maths.curves.segments import MOST, Triple, checked_configuration, moved
 from uvf.planning.costmap.costmap import Costmap
-from uvf.planning.costmap.headings import HEADINGS, STEP, heading_bin
+from uvf.planning.costmap.headings import HEADINGS, STEP
 from uvf.planning.search.curve_table import curve_table
-from uvf.planning.search.goal_room import ENOUGH, states_before
 from uvf.planning.search.goal_field import begin, coarse_index, goal_field
+from uvf.planning.search.goal_room import ENOUGH, states_before
 from uvf.planning.search.hybrid_expansion import Knowledge, Question, curve_to_goal, search, way_to
 from uvf.planning.search.hybrid_nodes import MOVE, make_nodes
 from uvf.planning.search.motion_primitives import SPACING, Moves, Vehicle, motion_primitives, shapes

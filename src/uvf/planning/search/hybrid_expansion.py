@@ -140,7 +140,11 @@ def search(
             continue
         nodes.links[top, CLOSED] = 1
         expanded += 1
-        here, cost, before = (nodes.poses[top, X], nodes.poses[top, Y], nodes.poses[top, YAW]), nodes.poses[top, COST], nodes.links[top, MOVE]
+        here, cost, before = (
+            (nodes.poses[top, X], nodes.poses[top, Y], nodes.poses[top, YAW]),
+            nodes.poses[top, COST],
+            nodes.links[top, MOVE],
+        )
         wait -= 1
         if wait <= 0:
             wait = int((key - cost) / EXPANSION_RATIO)
@@ -159,7 +163,9 @@ def search(
                 continue
             state = (int(y) * columns + int(x)) * HEADINGS + ((k + moves.turn[move]) & (HEADINGS - 1))
             known = slot[state] - base
-            if known >= 0 and (nodes.links[known, CLOSED] == 1 or nodes.poses[known, COST] <= cost + abs(moves.length[move]) * moves.price[move]):
+            if known >= 0 and (
+                nodes.links[known, CLOSED] == 1 or nodes.poses[known, COST] <= cost + abs(moves.length[move]) * moves.price[move]
+            ):
                 continue
             price = _priced(know, ask, here, move)
             if price < 0.0:
