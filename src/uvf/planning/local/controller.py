@@ -12,13 +12,13 @@ from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.planning.costmap.costmap import Costmap
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation, cost_factors
-from uvf.planning.costmap.obstacle_layer import Observation, ObstacleLayer
+from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
 from uvf.planning.costmap.own_ground import LEAVING, with_way_out
 from uvf.planning.local.goal_checker import GoalChecker, GoalTolerances, turn_to_heading
 from uvf.planning.local.planner import STOP, Limits, LocalPlanner, Situation, State, within
 from uvf.planning.local.swept_stop import safe_share
 from uvf.planning.local.window import WindowSettings, local_window
-from uvf.planning.moving.tracks import MovingObjects
+from uvf.planning.moving.tracks import MovingObjects, SeenFrom
 
 Floats = NDArray[np.float64]
 
@@ -97,14 +97,14 @@ class LocalController:
         ends = transform(pose, points)
         (x, y), *_ = transform(pose, np.array((eye,))).tolist()
         self.layer.recentre((pose[0], pose[1]))
-        moves = self.moving.observe(t, (x, y), ends, ranges)
+        moves = self.moving.observe(t, ends, ranges, SeenFrom((x, y), self.layer.lately_free(t, ends)))
         hits = (ranges > 0.0) & (ranges <= self.settings.obstacle_range) & ~moves
         far = np.maximum(ranges, 1e-9) > self.settings.obstacle_range
         if far.any():
             share = np.where(far, self.settings.obstacle_range / np.maximum(ranges, 1e-9), 1.0)[:, None]
             ends = np.array((x, y)) + (ends - np.array((x, y))) * share
         self._travel(pose)
-        self.layer.observe(Observation(self._odometer, (x, y), ends, hits))
+        self.layer.observe(BeamObservation(t, self._odometer, (x, y), ends, hits))
         self.layer.forget(self._odometer)
         near = points[(ranges > 0.0) & (np.abs(points) <= NEAR).all(axis=1)]
         self._near = np.concatenate((near, transform(inverse(pose), self.layer.lethal_near((pose[0], pose[1]), REMEMBERED))))
