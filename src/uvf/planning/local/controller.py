@@ -43,6 +43,7 @@ class ControllerSettings:
     cost_travel_multiplier: float = 4.0
     margin: float = 0.02  # m round the footprint, for plans
     stop_margin: float = 0.01  # m round the footprint, for the stop
+    slip: float = 0.01  # s^2, of speed times turn rate: what is added to it where wheels slide sideways in a curve
     window: WindowSettings = field(default_factory=WindowSettings)
     period: float = 0.05  # s from one command to the next
     delay: float = 0.05  # s from a measurement to the wheels
@@ -188,7 +189,10 @@ class LocalController:
         s = self.settings
         brake = (s.reaction, s.braking, s.angular_braking)
         faster = tuple(m if abs(m) > abs(w) else w for w, m in zip(wanted, velocity, strict=True))
-        share = min(safe_share(self._near, v, self.footprint, s.stop_margin, brake) for v in (wanted, (faster[0], faster[1])))
+        share = min(
+            safe_share(self._near, v, self.footprint, s.stop_margin + s.slip * abs(v[0] * v[1]), brake)
+            for v in (wanted, (faster[0], faster[1]))
+        )
         return share * wanted[0], share * wanted[1]
 
     def _ahead(self, pose: Pose2, velocity: tuple[float, float]) -> State:

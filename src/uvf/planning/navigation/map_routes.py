@@ -9,7 +9,7 @@ from uvf.planning.costmap.inflation import FREE_SPACE, LETHAL
 from uvf.planning.local.controller import LocalController
 from uvf.planning.navigation.failures import Failure
 from uvf.planning.navigation.navigator import NavigationGoal, Route
-from uvf.planning.navigation.routes import route_over, still_free
+from uvf.planning.navigation.routes import KnownFree, route_over, still_free
 
 Floats = NDArray[np.float64]
 Cells = NDArray[np.int8]
@@ -25,6 +25,7 @@ class MapRoutes:
     def __init__(self, cells: Cells, frame: Frame, controller: LocalController) -> None:
         self._cells, self._frame, self._controller = cells, frame, controller
         self._trusts_sight = False
+        self._known_free = KnownFree()
 
     def plan(self, pose: Pose2, goal: NavigationGoal) -> Route:
         """The best path to the goal."""
@@ -33,7 +34,7 @@ class MapRoutes:
             return Route(None, Failure.GOAL_OUTSIDE_MAP)
         factors = self._controller.factors.copy()
         factors[-1] = -1.0
-        return route_over(costs, factors, pose, goal)
+        return self._known_free.judged(route_over(costs, factors, pose, goal), costs)
 
     def is_free(self, path: Floats) -> bool:
         """Whether the vehicle's centre may still be everywhere on the path."""

@@ -111,7 +111,8 @@ class Navigator:
         self._planned_at = -inf
         self._tried = 0
         self._count, self._begun_with = 0, inf
-        self._until = -inf
+        self._begun_at: Pose2 | None = None
+        self._until, self._waits = -inf, False
         self._speed, self._blocked_at = 0.0, -inf
         self._at: tuple[float, Pose2] | None = None
 
@@ -122,7 +123,8 @@ class Navigator:
         self._tell(t, f"goal ({goal.x:.2f}, {goal.y:.2f})" + (", the one before is preempted" if self.is_busy else ""))
         self._goal, self._status = goal, Status.FOLLOWING
         self._failure, self._reason = Failure.NONE, ""
-        self._tried, self._count, self._begun_with, self._until = 0, 0, inf, -inf
+        self._tried, self._count, self._until = 0, 0, -inf
+        self._begun_with, self._begun_at = inf, None
         self._planned_at, self._at = -inf, None
         self._direct(Action.STOP)
 
@@ -151,7 +153,7 @@ class Navigator:
         if self._is_reached(pose, self._goal):
             self._end(t, Status.REACHED, Failure.NONE, "")
         elif self._status == Status.RECOVERING:
-            self._recover_on(t, pose, report)
+            self._recover_on(t, pose, self._goal, report)
         if self._status == Status.FOLLOWING:
             self._follow(t, pose, self._goal, report)
         return self._directive
@@ -159,8 +161,7 @@ class Navigator:
     def _follow(self, t: float, pose: Pose2, goal: NavigationGoal, report: Report) -> None:
         blocked = self._directive.action == Action.FOLLOW and not self._source.is_free(self._directive.path)
         if t - self._planned_at >= self.settings.replan_period or blocked or self._directive.action != Action.FOLLOW:
-            self._planned_at = t
-            route = self._source.plan(pose, goal)
+            route = self._plan(t, pose, goal)
             if route.path is None:
                 self._fail(t, pose, route.failure, route.reason)
                 return
@@ -177,10 +178,15 @@ class Navigator:
     def _watch(self, t: float, pose: Pose2, report: Report) -> None:
         left = _remaining(self._directive.path, pose)
         self._progress.look(t, pose, left)
-        if left <= self._begun_with - self.settings.recovered:
+        begun = self._begun_at
+        if (
+            begun is not None
+            and hypot(pose[0] - begun[0], pose[1] - begun[1]) >= self.settings.recovered
+            and left <= self._begun_with - self.settings.recovered
+        ):
             if self._tried:
                 self._tell(t, "recovered: the vehicle gets on")
-            self._tried, self._begun_with = 0, left
+            self._tried, self._begun_with, self._begun_at = 0, inf, None
         if self._progress.is_standing(t):
             cause = {Drive.NO_VALID_CONTROL: Failure.NO_VALID_CONTROL, Drive.STOPPED: Failure.BLOCKED}
             self._fail(t, pose, cause.get(report.how, Failure.FAILED_TO_MAKE_PROGRESS), "")
@@ -200,14 +206,16 @@ class Navigator:
             self._fail(t, pose, failure, reason)
             return
         self._count += 1
-        if self._begun_with == inf and self._directive.action == Action.FOLLOW:
-            self._begun_with = _remaining(self._directive.path, pose)
+        if self._begun_at is None:
+            self._begun_at = pose
+            self._begun_with = _remaining(self._directive.path, pose) if self._directive.action == Action.FOLLOW else inf
         self._begin(t, attempt, failure, reason)
 
     def _begin(self, t: float, attempt: Attempt, failure: Failure, reason: str) -> None:
         self._tell(t, f"{attempt.recovery.value}, because {reason or failure.value}")
         self._status = Status.RECOVERING
         kind, amount = attempt.recovery, attempt.amount
+        self._waits = kind == Recovery.WAIT
         if kind in (Recovery.CONSERVATIVE_RESET, Recovery.AGGRESSIVE_RESET):
             self._direct(Action.STOP, clear_beyond=amount)
             if kind == Recovery.AGGRESSIVE_RESET:
@@ -220,13 +228,20 @@ class Navigator:
             self._direct(Action.SPIN if kind == Recovery.CLEARING_ROTATION else Action.BACK_UP, amount=amount)
             self._until = t + LONGEST
 
-    def _recover_on(self, t: float, pose: Pose2, report: Report) -> None:
+    def _recover_on(self, t: float, pose: Pose2, goal: NavigationGoal, report: Report) -> None:
         mine = report.number == self._directive.number
         if mine and report.impossible:
             self._tell(t, f"impossible to {self._directive.action.value}: an obstacle is in the way")
+        elif self._waits:  # whatever stood in the way may leave before the time is over
+            if t < self._until and (t - self._planned_at < self.settings.replan_period or self._plan(t, pose, goal).path is None):
+                return
         elif not (t >= self._until or (mine and report.done)):
             return
         self._status, self._planned_at = Status.FOLLOWING, -inf
+
+    def _plan(self, t: float, pose: Pose2, goal: NavigationGoal) -> Route:
+        self._planned_at = t
+        return self._source.plan(pose, goal)
 
     def _is_reached(self, pose: Pose2, goal: NavigationGoal) -> bool:
         if hypot(pose[0] - goal.x, pose[1] - goal.y) > self.settings.goal_tolerance:
