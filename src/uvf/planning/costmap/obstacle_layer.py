@@ -161,6 +161,11 @@ class ObstacleLayer:
         out: Floats = (found[:, ::-1] + 0.5) * self.resolution + np.array(self.origin)
         return out
 
+    def has_room(self, place: Point, radius: float) -> bool:
+        """Whether no obstacle lies within ``radius`` [m] of a place [m]."""
+        near = self.lethal_near(place, radius)
+        return not (np.hypot(near[:, 0] - place[0], near[:, 1] - place[1]) < radius).any()
+
     def clear(self, beyond: float = 0.0, centre: Point | None = None) -> None:
         """Forgets everything farther than ``beyond`` [m] from ``centre`` [m]: it is unknown again (the resets of move_base)."""
         if centre is None or beyond <= 0.0:

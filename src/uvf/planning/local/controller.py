@@ -26,7 +26,6 @@ LEAVING_COST = 30.0
 """Factor on the cost of ground within the inscribed radius of an obstacle, when it has to be left."""
 NEAR = 4.0  # m, farther points cannot be reached before the next scan
 REMEMBERED = 1.0  # m within which the stop heeds obstacles that are out of view
-ROOM_WINDOW = 0.5  # m more than the footprint in which room to turn is looked for
 TURN_COUNTS = 0.3  # m/rad
 WAY_OUT = 0.3  # m about the vehicle within which it may leave such ground
 
@@ -128,9 +127,7 @@ class LocalController:
 
     def has_room_to_turn(self, pose: Pose2) -> bool:
         """Whether no known obstacle is in the way of turning on the spot."""
-        costs = self.costmap(2.0 * self.footprint.circumscribed_radius + ROOM_WINDOW)
-        cell = costs.cell(pose[0], pose[1])
-        return not costs.holds(cell) or int(costs.blocked[cell]) == 0
+        return self.layer.has_room((pose[0], pose[1]), self._plan_footprint.circumscribed_radius)
 
     def leaving(self, costs: Costmap, pose: Pose2) -> Costmap:
         """The costmap in which the vehicle may leave a place that is too near to an obstacle."""

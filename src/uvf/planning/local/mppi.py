@@ -38,11 +38,11 @@ class MppiSettings:
     temperature: float = 0.3
     collision_weight: float = 60.0
     cost_weight: float = 3.0
-    to_go_weight: float = 2.0  # 1/m
-    mean_to_go_weight: float = 1.5  # 1/m
-    off_path_weight: float = 0.3  # 1/m
-    reverse_weight: float = 1.5  # 1/m
-    turn_weight: float = 0.05  # s/rad
+    to_go_weight: float = 8.0  # per way at full speed within the horizon, as all weights of lengths
+    mean_to_go_weight: float = 6.0
+    off_path_weight: float = 1.2
+    reverse_weight: float = 6.0
+    turn_weight: float = 0.1  # per largest turn rate
     near_weight: float = 8.0
     fast_weight: float = 6.0
     close_weight: float = 10.0
@@ -99,15 +99,13 @@ class Mppi:
 
     @property
     def _weights(self) -> Floats32:
-        s, weights = self.settings, np.zeros(FEATURES, dtype=np.float32)
+        s, limits = self.settings, self._limits
+        way, weights = s.steps * s.step * limits.max_speed, np.zeros(FEATURES, dtype=np.float32)
         weights[rollout.COLLIDED], weights[rollout.COST], weights[rollout.NEAR] = s.collision_weight, s.cost_weight, s.near_weight
-        weights[rollout.TO_GO], weights[rollout.MEAN_TO_GO], weights[rollout.OFF_PATH] = (
-            s.to_go_weight,
-            s.mean_to_go_weight,
-            s.off_path_weight,
-        )
+        weights[rollout.TO_GO], weights[rollout.MEAN_TO_GO] = s.to_go_weight / way, s.mean_to_go_weight / way
+        weights[rollout.OFF_PATH], weights[rollout.REVERSED] = s.off_path_weight / way, s.reverse_weight / way
         weights[rollout.FAST], weights[rollout.CLOSE] = s.fast_weight, s.close_weight
-        weights[rollout.REVERSED], weights[rollout.TURNED] = s.reverse_weight, s.turn_weight
+        weights[rollout.TURNED] = s.turn_weight / limits.max_turn_rate
         return weights
 
     def _smooth(self) -> None:
@@ -130,7 +128,8 @@ def _manoeuvres(limits: Limits, settings: MppiSettings) -> Floats32:
                 commands = np.tile((speed, 0.0), (settings.steps, 1))
                 commands[:first] = 0.0, rate
                 turning.append(commands)
-    return np.concatenate((np.array(turning), steady)).astype(np.float32)[: settings.samples // 2]
+    both: Floats32 = np.concatenate((np.array(turning), steady)).astype(np.float32)[: settings.samples // 2]
+    return both
 
 
 def _coloured(white: Floats, memory: float) -> Floats:

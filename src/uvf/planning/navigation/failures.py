@@ -13,6 +13,7 @@ class Failure(Enum):
     START_OUTSIDE_MAP = "the vehicle is outside its map: its pose or the map is wrong"
     GOAL_OCCUPIED = "the goal lies in an obstacle"
     GOAL_OUTSIDE_MAP = "the goal lies outside the map"
+    GOAL_TOO_FAR = "the goal is too far to plan"
     NO_VALID_PATH = "no way leads to the goal"
     NO_VALID_CONTROL = "every velocity leads into an obstacle"
     BLOCKED = "an obstacle stands in the way and does not leave"

@@ -29,6 +29,7 @@ class NavigationGoal:
     x: float
     y: float
     yaw: float | None = None
+    tolerance: float = 0.25  # m from it that counts as there
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,6 @@ class Status(Enum):
 class NavigatorSettings:
     """How patiently a goal is driven to."""
 
-    goal_tolerance: float = 0.25  # m
     yaw_goal_tolerance: float = 0.1  # rad
     replan_period: float = 1.0  # s
     recovered: float = 1.0  # m of the way by which it must have become shorter for recoveries to begin from the first again
@@ -132,6 +132,12 @@ class Navigator:
         """Gives the goal up because somebody asked for it; the vehicle stops."""
         if self.is_busy:
             self._end(t, Status.CANCELLED, Failure.CANCELLED, "")
+
+    def pause(self, t: float, pose: Pose2) -> None:
+        """The vehicle stands, or drives, because somebody else commands it: that is no lack of progress."""
+        self._progress.reset(t, pose)
+        if self._status == Status.RECOVERING:
+            self._status, self._planned_at = Status.FOLLOWING, -inf
 
     @property
     def is_busy(self) -> bool:
@@ -244,7 +250,7 @@ class Navigator:
         return self._source.plan(pose, goal)
 
     def _is_reached(self, pose: Pose2, goal: NavigationGoal) -> bool:
-        if hypot(pose[0] - goal.x, pose[1] - goal.y) > self.settings.goal_tolerance:
+        if hypot(pose[0] - goal.x, pose[1] - goal.y) > goal.tolerance:
             return False
         return goal.yaw is None or abs(wrap(pose[2] - goal.yaw)) <= self.settings.yaw_goal_tolerance
 
