@@ -116,17 +116,23 @@ class Navigator:
         self._speed, self._blocked_at = 0.0, -inf
         self._at: tuple[float, Pose2] | None = None
 
+    def fit(self, settings: NavigatorSettings) -> None:
+        """Is as patient as ``settings`` say from now on."""
+        self.settings = settings
+        self._progress.settings = settings.progress
+
     def start(self, t: float, goal: NavigationGoal) -> None:
         """Takes a goal at ``t`` [s]; the one before is preempted."""
         if not (np.isfinite(goal.x) and np.isfinite(goal.y) and (goal.yaw is None or np.isfinite(goal.yaw))):
             raise ValueError(f"goal: ({goal.x}, {goal.y}, {goal.yaw}); its coordinates must be finite [m, m, rad]")
-        self._tell(t, f"goal ({goal.x:.2f}, {goal.y:.2f})" + (", the one before is preempted" if self.is_busy else ""))
         self._goal, self._status = goal, Status.FOLLOWING
         self._failure, self._reason = Failure.NONE, ""
         self._tried, self._count, self._until = 0, 0, -inf
         self._begun_with, self._begun_at = inf, None
         self._planned_at, self._at = -inf, None
-        self._direct(Action.STOP)
+        self._progress.new_way(t)
+        if self._directive.action != Action.FOLLOW:
+            self._direct(Action.STOP)
 
     def cancel(self, t: float) -> None:
         """Gives the goal up because somebody asked for it; the vehicle stops."""
@@ -256,8 +262,6 @@ class Navigator:
 
     def _end(self, t: float, status: Status, failure: Failure, reason: str) -> None:
         self._status, self._failure, self._reason = status, failure, reason
-        why = reason or failure.value
-        self._tell(t, status.value + (f": {why}" if why else ""))
         self._direct(Action.STOP)
 
     def _direct(self, action: Action, amount: float = 0.0, clear_beyond: float | None = None) -> None:
