@@ -42,6 +42,8 @@ class MppiSettings:
     mean_to_go_weight: float = 6.0
     off_path_weight: float = 1.2
     reverse_weight: float = 6.0
+    aside_weight: float = 6.0
+    """Of the way that the vehicle would make at full speed in the time that it needs to turn to the way on."""
     turn_weight: float = 0.1  # per largest turn rate
     near_weight: float = 8.0
     fast_weight: float = 6.0
@@ -106,6 +108,7 @@ class Mppi:
         weights[rollout.OFF_PATH], weights[rollout.REVERSED] = s.off_path_weight / way, s.reverse_weight / way
         weights[rollout.FAST], weights[rollout.CLOSE] = s.fast_weight, s.close_weight
         weights[rollout.TURNED] = s.turn_weight / limits.max_turn_rate
+        weights[rollout.ASIDE] = s.aside_weight / way * limits.max_speed / limits.max_turn_rate
         return weights
 
     def _smooth(self) -> None:
