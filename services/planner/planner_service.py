@@ -228,7 +228,8 @@ class PlannerService(Service):
         """Heeds the parameters."""
         self._explorer.taste = self._taste
         self._navigator.fit(self._patience)
-        self._planner.fit(self._body)
+        if self._planner.fit(self._body):
+            self._navigator.replan()
 
     def _move(self, poses: list[PoseInFrame]) -> None:
         for message in poses:

@@ -121,6 +121,10 @@ class Navigator:
         self.settings = settings
         self._progress.settings = settings.progress
 
+    def replan(self) -> None:
+        """Plans anew in the next step."""
+        self._planned_at = -inf
+
     def start(self, t: float, goal: NavigationGoal) -> None:
         """Takes a goal at ``t`` [s]; the one before is preempted."""
         if not (np.isfinite(goal.x) and np.isfinite(goal.y) and (goal.yaw is None or np.isfinite(goal.yaw))):
