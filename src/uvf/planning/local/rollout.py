@@ -35,9 +35,10 @@ class Others(NamedTuple):
 FEATURES = 11
 COLLIDED, COST, WORST, TO_GO, MEAN_TO_GO, OFF_PATH, REVERSED, TURNED, NEAR, FAST, CLOSE = range(FEATURES)
 """Columns of what a rollout finds: share of the horizon [0..1] that comes after the first contact (0: none); mean cost [0..1]; largest
-cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards [m], ``UNSEEN`` times
-as much over unknown ground; mean turn rate [rad/s]; mean nearness to moving obstacles [0..1, 1 = contact, exponential]; mean cost times the square of the share of the largest speed [0..1];
-share of the horizon within the soft margin of an obstacle, weighed by 0.3 and the share of the largest speed."""
+cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards [m], ``UNSEEN`` times as
+much over unknown ground; mean turn rate [rad/s]; mean nearness to moving obstacles [0..1, 1 = contact, exponential]; mean cost times the
+square of the share of the largest speed [0..1]; share of the horizon within the soft margin of an obstacle, weighed by 0.3 and the share
+of the largest speed."""
 
 
 @compiled

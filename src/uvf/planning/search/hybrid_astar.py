@@ -39,7 +39,7 @@ GIVEN_UP = f"no way was found with {MOST_EXPANDED} nodes; one may exist"
 
 @dataclass(frozen=True)
 class HybridPlan:
-    """An answer: ``path`` (n, 3) x, y [m, map frame], yaw [rad], and ``direction`` (n,) of travel, 1 or -1, with which each pose is reached;
+    """An answer: ``path`` (n, 3) x, y [m, map frame], yaw [rad], and ``direction`` (n,) of travel, 1 or -1, to each pose;
     or None and the ``reason``. ``cost`` [m] with penalties; ``expanded`` nodes."""
 
     path: Floats | None
