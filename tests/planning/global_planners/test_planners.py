@@ -227,7 +227,7 @@ def test_time_that_has_run_out_is_told(name):
 
 
 def test_an_unknown_name_names_the_nearest():
-    with pytest.raises(ValueError, match="no 'a_star'.*astar"):
+    with pytest.raises(ValueError, match=r"no 'a_star'.*astar"):
         make_global_planner("a_star", costmap(np.zeros((3, 3))))
 
 
