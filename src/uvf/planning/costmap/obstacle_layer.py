@@ -21,6 +21,7 @@ Mask = NDArray[np.bool_]
 Point = tuple[float, float]
 Frame = tuple[float, float, float]
 
+BEYOND = 1.5  # times the window's side, where beams are cut off
 LATELY = 1.0  # s
 LONG_AGO = -(2**30)  # ms
 
@@ -131,10 +132,13 @@ class ObstacleLayer:
         """Marks the beams' ends and clears along them; what is not finite is left out."""
         self._begun = seen.t if self._count == 0 else self._begun
         self._count += 1
-        whole = np.isfinite(seen.ends).all(axis=1)
+        away = seen.ends - np.array(seen.eye)
+        distances, reach = np.hypot(away[:, 0], away[:, 1]), BEYOND * self.resolution * len(self.cells)
+        whole, inside = np.isfinite(distances), distances <= reach
+        ends = np.array(seen.eye) + away[whole] * np.minimum(reach / np.maximum(distances[whole], reach), 1.0)[:, None]
         frame = (*self.origin, self.resolution)
-        mark_ends(self.cells, self._seen, self._hit, frame, seen.ends[whole & seen.hits], (seen.age, self._count))
-        clear_beams(self.cells, self._freed, self._hit, frame, (seen.eye, seen.ends[whole]), (self._ms(seen.t), self._count))
+        mark_ends(self.cells, self._seen, self._hit, frame, seen.ends[whole & inside & seen.hits], (seen.age, self._count))
+        clear_beams(self.cells, self._freed, self._hit, frame, (seen.eye, ends), (self._ms(seen.t), self._count))
 
     def lately_free(self, t: float, points: Floats) -> Mask:
         """(n,) whether something that ends beams at the points (n, 2) [m] at ``t`` [s] has come there.

@@ -114,6 +114,35 @@ def _priced(know: Knowledge, ask: Question, here: Triple, move: int) -> float:
 
 
 @compiled
+def _child(know: Knowledge, ask: Question, slots: tuple[Slots, int], nodes: Nodes, step: tuple[int, int]) -> tuple[int, Triple, float]:
+    """State, pose and cost from the start [cells] of a node's child by a move; the cost is negative where it is not worth keeping.
+
+    step: node, move.
+    """
+    (slot, base), (top, move), moves = slots, step, know.moves
+    rows, columns = know.check.values.shape
+    here, cost, before = (nodes.poses[top, X], nodes.poses[top, Y], nodes.poses[top, YAW]), nodes.poses[top, COST], nodes.links[top, MOVE]
+    k, last = heading_bin(here[2]), moves.shape.shape[2] - 1
+    x, y = here[0] + moves.shape[k, move, last, 0], here[1] + moves.shape[k, move, last, 1]
+    pose = (x, y, moves.shape[k, move, last, 2])
+    if not (0.0 <= x < columns and 0.0 <= y < rows):
+        return 0, pose, -1.0
+    state = (int(y) * columns + int(x)) * HEADINGS + ((k + moves.turn[move]) & (HEADINGS - 1))
+    known = slot[state] - base
+    least = cost + abs(moves.length[move]) * moves.price[move]
+    if known >= 0 and (nodes.links[known, CLOSED] == 1 or nodes.poses[known, COST] <= least):
+        return state, pose, -1.0
+    price = _priced(know, ask, here, move)
+    if price < 0.0:
+        return state, pose, -1.0
+    factor = moves.price[move]
+    if before >= 0 and moves.curvature[move] * moves.curvature[before] < 0.0:
+        factor += ask.penalties[1]
+    way = cost + abs(moves.length[move]) * price * factor
+    return state, pose, (-1.0 if known >= 0 and nodes.poses[known, COST] <= way else way)
+
+
+@compiled
 def search(
     know: Knowledge, ask: Question, nodes: Nodes, heaps: tuple[Heap, Heap], slots: tuple[Slots, int]
 ) -> tuple[int, float, bool, int, int, Nodes, Heap, Heap]:
@@ -122,10 +151,10 @@ def search(
 
     heaps: open list and that of the field; slots: table of states, and the number that this query's first node has in it.
     """
-    (heap, fringe), (slot, base), moves = heaps, slots, know.moves
-    columns, last, p = know.check.values.shape[1], know.moves.shape.shape[2] - 1, know.moves.length.size
+    (heap, fringe), (slot, base), p = heaps, slots, know.moves.length.size
+    columns = know.check.values.shape[1]
     curve = np.zeros((MOST, 2))
-    change, goal = ask.penalties[1], ask.goal
+    goal = ask.goal
     at_goal = (int(goal[1]) * columns + int(goal[0])) * HEADINGS + heading_bin(goal[2])
     state = (int(ask.start[1]) * columns + int(ask.start[0])) * HEADINGS + heading_bin(ask.start[2])
     put(nodes, 0, (ask.start[0], ask.start[1], ask.start[2], 0.0), (-1, state, -1))
@@ -141,11 +170,7 @@ def search(
             continue
         nodes.links[top, CLOSED] = 1
         expanded += 1
-        here, cost, before = (
-            (nodes.poses[top, X], nodes.poses[top, Y], nodes.poses[top, YAW]),
-            nodes.poses[top, COST],
-            nodes.links[top, MOVE],
-        )
+        here, cost = (nodes.poses[top, X], nodes.poses[top, Y], nodes.poses[top, YAW]), nodes.poses[top, COST]
         wait -= 1
         if wait <= 0:
             wait = int((key - cost) / EXPANSION_RATIO)
@@ -157,27 +182,11 @@ def search(
         if nodes.links[top, STATE] == at_goal and cost < best:
             best, best_node, by_curve = cost, top, False
         heap, nodes = with_room(heap, size, p), with_nodes(nodes, count, p)
-        k = heading_bin(here[2])
         for move in range(p):
-            x, y = here[0] + moves.shape[k, move, last, 0], here[1] + moves.shape[k, move, last, 1]
-            if not (0.0 <= x < columns and 0.0 <= y < know.check.values.shape[0]):
+            state, (x, y, yaw), way = _child(know, ask, (slot, base), nodes, (top, move))
+            if way < 0.0:
                 continue
-            state = (int(y) * columns + int(x)) * HEADINGS + ((k + moves.turn[move]) & (HEADINGS - 1))
             known = slot[state] - base
-            if known >= 0 and (
-                nodes.links[known, CLOSED] == 1 or nodes.poses[known, COST] <= cost + abs(moves.length[move]) * moves.price[move]
-            ):
-                continue
-            price = _priced(know, ask, here, move)
-            if price < 0.0:
-                continue
-            factor = moves.price[move]
-            if before >= 0 and moves.curvature[move] * moves.curvature[before] < 0.0:
-                factor += change
-            way = cost + abs(moves.length[move]) * price * factor
-            if known >= 0 and nodes.poses[known, COST] <= way:
-                continue
-            yaw = moves.shape[k, move, last, 2]
             left, fringe = _estimate(know, ask, fringe, (x, y, yaw))
             if way + left >= best:
                 continue
