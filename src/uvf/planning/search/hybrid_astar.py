@@ -25,7 +25,7 @@ MOST_EXPANDED = 1_000_000
 APPROACH = 1_000
 """Nodes expanded after the first way was found, to find a better one (Smac: ``max_on_approach_iterations``)."""
 TOLERANCE = 0.05
-"""Share of a way's cost by which a better one is not looked for."""
+"""Share of the cheapest way's cost by which a way may cost more; far fewer nodes are expanded so."""
 LAST_NUMBER = 2**31 - 2 * MOST_EXPANDED * 6
 """Of a node at a query's begin; the table is cleared after it."""
 

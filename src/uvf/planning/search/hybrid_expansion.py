@@ -32,8 +32,8 @@ EXPANSION_RATIO = 3.5
 class Question(NamedTuple):
     """What is asked: poses [cells, rad], ``radius`` [cells], penalties, ``margin`` [cells] round the outline, and when to stop.
 
-    ``tolerance``: the search ends when no open node promises a way cheaper than the best one by this share; ``approach``: most nodes
-    expanded after the first way; ``most``: of all.
+    ``tolerance``: the estimate counts for more by this share, and so much may the way found cost more than the cheapest one (weighted A*,
+    Pohl 1970); ``approach``: most nodes expanded after the first way; ``most``: of all.
     """
 
     start: Triple
@@ -132,9 +132,9 @@ def search(
     slot[state] = base
     key, fringe = _estimate(know, ask, fringe, ask.start)
     count, expanded, wait, limit = 1, 0, 0, ask.most
-    best, best_node, by_curve = inf, -1, False
+    best, best_node, near, near_node = inf, -1, inf, -1
     size = push(heap, 0, key, 0) if key < inf else 0
-    while size > 0 and expanded < limit and heap.keys[0] * (1.0 + ask.tolerance) < best:
+    while size > 0 and expanded < limit and heap.keys[0] < best:
         key, top = heap.keys[0], int(heap.items[0])
         size = pop(heap, size)
         if nodes.links[top, CLOSED] == 1:
@@ -153,9 +153,10 @@ def search(
                 total = cost + curve_cost(know.check, ask, here, curve)
                 if total < best:
                     limit = min(limit, expanded + ask.approach) if best_node < 0 else limit
-                    best, best_node, by_curve = total, top, True
-        if nodes.links[top, STATE] == at_goal and cost < best:
-            best, best_node, by_curve = cost, top, False
+                    best, best_node = total, top
+        if nodes.links[top, STATE] == at_goal and near_node < 0:
+            near, near_node = cost, top
+            limit = min(limit, expanded + ask.approach)
         heap, nodes = with_room(heap, size, p), with_nodes(nodes, count, p)
         k = heading_bin(here[2])
         for move in range(p):
@@ -186,8 +187,10 @@ def search(
                 slot[state] = base + count
                 count += 1
             put(nodes, known, (x, y, yaw, way), (top, state, move))
-            size = push(heap, size, way + left, known)
-    return best_node, best, by_curve, count, expanded, nodes, heap, fringe
+            size = push(heap, size, way + (1.0 + ask.tolerance) * left, known)
+    if best_node < 0:  # no curve leads to the very goal: its cell has to do
+        return near_node, near, False, count, expanded, nodes, heap, fringe
+    return best_node, best, True, count, expanded, nodes, heap, fringe
 
 
 @compiled
