@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 SIZE = 24.0  # m, of the window that paths are planned over
 REPLAN = 0.2  # s
 STACK_LIMITS = Limits(
-    min_speed=-0.5, max_speed=1.4, max_turn_rate=2.0, acceleration=2.5, angular_acceleration=6.0, lateral_acceleration=2.0
+    min_speed=-0.5, max_speed=1.4, max_turn_rate=2.0, acceleration=2.5, angular_acceleration=6.0, lateral_acceleration=1.5
 )
 DWA_LIMITS = Limits(0.1, 0.5, 1.57, 10.0, 20.0, 10.0)
 MOVE_BASE_HALF, MOVE_BASE_PADDING = (0.21, 0.165), 0.1  # m

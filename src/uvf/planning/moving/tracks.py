@@ -13,6 +13,9 @@ Mask = NDArray[np.bool_]
 Point = tuple[float, float]
 
 NEVER = 1e6
+FRESH = 0.3  # weight of the last scan
+SURE = 0.5
+PART = 0.3  # of a thing's points
 BESIDE = 0.15
 """m beyond the radius of a thing that moves, within which what is seen is part of it."""
 
@@ -34,6 +37,14 @@ class TrackSettings:
     farthest: float = 20.0  # m
 
 
+@dataclass(frozen=True)
+class SeenFrom:
+    """Where a scan was taken, and which of its points (n,) lie on ground that was free just before: something has come there."""
+
+    eye: Point
+    entered: Mask
+
+
 @dataclass
 class Track:
     """One thing: x, y [m], vx, vy [m/s], their covariance, and its radius [m]."""
@@ -43,14 +54,20 @@ class Track:
     radius: float
     born: Floats
     """(2,) m, where it was first seen."""
+    entered: float = 0.0
+    """Share [0..1] of the last scans in which it stood on ground that had been free."""
+    has_left: bool = False  # beams pass where it was first seen
     hits: int = 1
     unseen: float = 0.0  # s, in view without being seen
     hidden: float = 0.0  # s, out of view
 
     def is_moving(self, settings: TrackSettings) -> bool:
-        """Whether its speed is large enough, and sure enough, and has brought it somewhere."""
+        """Whether its speed is large enough, and sure enough, and has brought it somewhere.
+
+        The middle of what comes into view bit by bit moves as well; but it does not come onto ground that was free.
+        """
         speed = float(np.hypot(self.state[2], self.state[3]))
-        if self.hits < settings.least_hits or speed < settings.least_speed:
+        if self.hits < settings.least_hits or speed < settings.least_speed or not (self.has_left or self.entered >= SURE):
             return False
         along = self.state[2:] / speed
         deviation = float(np.sqrt(along @ self.covariance[2:, 2:] @ along))
@@ -65,13 +82,14 @@ class MovingObjects:
     tracks: list[Track] = field(default_factory=list)
     _t: float | None = None
 
-    def observe(self, t: float, eye: Point, points: Floats, ranges: Floats) -> Mask:
-        """Takes a scan at ``t`` [s]: points (n, 2) [m] in the order of the beams, ranges (n,) [m], 0 = none, from ``eye`` [m].
+    def observe(self, t: float, points: Floats, ranges: Floats, seen_from: SeenFrom) -> Mask:
+        """Takes a scan at ``t`` [s]: points (n, 2) [m] in the order of the beams, ranges (n,) [m], 0 = none.
 
         Returns the mask (n,) of beams that see something which moves. A scan that is no newer than the last is passed over.
         """
         if self._t is not None and t <= self._t:
             return np.zeros(len(ranges), dtype=np.bool_)
+        eye = seen_from.eye
         dt, self._t = (0.0 if self._t is None else t - self._t), t
         self._predict(dt)
         seen = np.where(ranges <= self.settings.farthest, ranges, 0.0)
@@ -84,11 +102,17 @@ class MovingObjects:
         found = {id(track) for track in matched.values()}
         self._age(dt, [track for track in self.tracks if id(track) not in found], (eye, points, seen))
         moving = np.zeros(count, dtype=np.bool_)
+        entered = np.bincount(labels[labels >= 0], seen_from.entered[labels >= 0], count) / np.maximum(
+            np.bincount(labels[labels >= 0], minlength=count), 1
+        )
         for k, disc in enumerate(discs):
             if (track := matched.get(k)) is None:
                 self._begin(disc)
                 continue
             self._correct(track, disc)
+            track.entered += FRESH * (float(entered[int(disc[LABEL])] >= PART) - track.entered)
+            if not track.has_left and float(np.hypot(*(track.state[:2] - track.born))) > track.radius:
+                track.has_left = _passes(track.born, track.radius, eye, points, seen)
             moving[int(disc[LABEL])] = track.is_moving(self.settings)
         mask: Mask = np.zeros(len(ranges), dtype=np.bool_)
         mask[labels >= 0] = moving[labels[labels >= 0]]
@@ -146,7 +170,7 @@ class MovingObjects:
     def _age(self, dt: float, missed: list[Track], scan: tuple[Point, Floats, Floats]) -> None:
         """Drops tracks that have not been seen for too long: soon where they should be seen, later where they cannot be."""
         for track in missed:
-            if _in_view(track, *scan):
+            if _passes(track.state[:2], track.radius, *scan):
                 track.unseen += dt
             else:
                 track.hidden += dt
@@ -155,10 +179,10 @@ class MovingObjects:
         self.tracks = [k for k in kept if k.hits > 1 or not k.hidden]
 
 
-def _in_view(track: Track, eye: Point, points: Floats, ranges: Floats) -> bool:
-    """Whether a beam passes the place where the thing should be, and ends behind it."""
-    dx, dy = track.state[0] - eye[0], track.state[1] - eye[1]
+def _passes(place: Floats, radius: float, eye: Point, points: Floats, ranges: Floats) -> bool:
+    """Whether a beam passes the middle of a disc at ``place`` (2,) [m] of ``radius`` [m], and ends behind it."""
+    dx, dy = place[0] - eye[0], place[1] - eye[1]
     distance = float(np.hypot(dx, dy))
     along, across = (points[:, 0] - eye[0]) * dx + (points[:, 1] - eye[1]) * dy, (points[:, 1] - eye[1]) * dx - (points[:, 0] - eye[0]) * dy
-    aimed = (along > 0.0) & (np.abs(across) <= 0.5 * track.radius / max(distance, 1e-6) * along)
-    return bool((aimed & ((ranges <= 0.0) | (ranges > distance + track.radius))).any())
+    aimed = (along > 0.0) & (np.abs(across) <= 0.5 * radius / max(distance, 1e-6) * along)
+    return bool((aimed & ((ranges <= 0.0) | (ranges > distance + radius))).any())
