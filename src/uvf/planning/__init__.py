@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from uvf.planning.global_planners.planner import GlobalPlannerSettings as GlobalPlannerSettings
     from uvf.planning.global_planners.planner import PathQuery as PathQuery
     from uvf.planning.global_planners.planners import make_global_planner as make_global_planner
-    from uvf.planning.pure_pursuit import PathTracker as PathTracker
     from uvf.planning.search.grid_search import GridSearch as GridSearch
 
 OFFERED = {
@@ -31,7 +30,6 @@ OFFERED = {
     "make_global_planner": "uvf.planning.global_planners.planners:make_global_planner",
     "PathQuery": "uvf.planning.global_planners.planner:PathQuery",
     "GlobalPlannerSettings": "uvf.planning.global_planners.planner:GlobalPlannerSettings",
-    "PathTracker": "uvf.planning.pure_pursuit:PathTracker",
     "Explorer": "uvf.planning.exploration:Explorer",
 }
 __all__ = list(OFFERED)
