@@ -114,6 +114,49 @@ def _priced(know: Knowledge, ask: Question, here: Triple, move: int) -> float:
 
 
 @compiled
+def _state(x: float, y: float, heading: int, columns: int) -> int:
+    """Number of the state of a place [cells] and a heading bin."""
+    return (int(y) * columns + int(x)) * HEADINGS + heading
+
+
+@compiled
+def _root(ask: Question, nodes: Nodes, slots: tuple[Slots, int], columns: int) -> int:
+    """Puts the start's node, and tells the state of the goal."""
+    state = _state(ask.start[0], ask.start[1], heading_bin(ask.start[2]), columns)
+    put(nodes, 0, (ask.start[0], ask.start[1], ask.start[2], 0.0), (-1, state, -1))
+    slots[0][state] = slots[1]
+    return _state(ask.goal[0], ask.goal[1], heading_bin(ask.goal[2]), columns)
+
+
+@compiled
+def _over_curve(know: Knowledge, ask: Question, here: Triple, curve: Floats, costs: tuple[float, float]) -> float:
+    """Cost [cells] of the way by ``here`` and the shortest curve to the goal; inf where that is blocked or not below the second of
+    ``costs``, the first being that of the way to ``here``. ``curve`` (5, 2) is room for it."""
+    if costs[0] + curve_to_goal(ask, here, curve) >= costs[1]:
+        return inf
+    return costs[0] + curve_cost(know.check, ask, here, curve)
+
+
+@compiled
+def _over_move(know: Knowledge, ask: Question, here: Triple, moves: tuple[int, int], costs: tuple[float, float]) -> float:
+    """Cost [cells] of the way by ``here`` and the second of ``moves``, the first (-1: none) having led to ``here``.
+
+    inf where the primitive is blocked, or the way costs no less than the second of ``costs``; the first is that of the way to ``here``.
+    """
+    (before, move), known = moves, know.moves
+    length, factor = abs(known.length[move]), known.price[move]
+    if costs[0] + length * factor >= costs[1]:
+        return inf
+    price = _priced(know, ask, here, move)
+    if price < 0.0:
+        return inf
+    if before >= 0 and known.curvature[move] * known.curvature[before] < 0.0:
+        factor += ask.penalties[1]
+    way: float = costs[0] + length * price * factor
+    return way if way < costs[1] else inf
+
+
+@compiled
 def search(
     know: Knowledge, ask: Question, nodes: Nodes, heaps: tuple[Heap, Heap], slots: tuple[Slots, int]
 ) -> tuple[int, float, bool, int, int, Nodes, Heap, Heap]:
@@ -124,12 +167,7 @@ def search(
     """
     (heap, fringe), (slot, base), moves = heaps, slots, know.moves
     columns, last, p = know.check.values.shape[1], know.moves.shape.shape[2] - 1, know.moves.length.size
-    curve = np.zeros((MOST, 2))
-    change, goal = ask.penalties[1], ask.goal
-    at_goal = (int(goal[1]) * columns + int(goal[0])) * HEADINGS + heading_bin(goal[2])
-    state = (int(ask.start[1]) * columns + int(ask.start[0])) * HEADINGS + heading_bin(ask.start[2])
-    put(nodes, 0, (ask.start[0], ask.start[1], ask.start[2], 0.0), (-1, state, -1))
-    slot[state] = base
+    curve, at_goal = np.zeros((MOST, 2)), _root(ask, nodes, slots, columns)
     key, fringe = _estimate(know, ask, fringe, ask.start)
     count, expanded, wait, limit = 1, 0, 0, ask.most
     best, best_node, near, near_node = inf, -1, inf, -1
@@ -141,19 +179,15 @@ def search(
             continue
         nodes.links[top, CLOSED] = 1
         expanded += 1
-        here, cost, before = (
-            (nodes.poses[top, X], nodes.poses[top, Y], nodes.poses[top, YAW]),
-            nodes.poses[top, COST],
-            nodes.links[top, MOVE],
-        )
+        here = (nodes.poses[top, X], nodes.poses[top, Y], nodes.poses[top, YAW])
+        cost, before = nodes.poses[top, COST], nodes.links[top, MOVE]
         wait -= 1
         if wait <= 0:
             wait = int((key - cost) / EXPANSION_RATIO)
-            if cost + curve_to_goal(ask, here, curve) < best:
-                total = cost + curve_cost(know.check, ask, here, curve)
-                if total < best:
-                    limit = min(limit, expanded + ask.approach) if best_node < 0 else limit
-                    best, best_node = total, top
+            total = _over_curve(know, ask, here, curve, (cost, best))
+            if total < best:
+                limit = min(limit, expanded + ask.approach) if best_node < 0 else limit
+                best, best_node = total, top
         if nodes.links[top, STATE] == at_goal and near_node < 0:
             near, near_node = cost, top
             limit = min(limit, expanded + ask.approach)
@@ -163,20 +197,12 @@ def search(
             x, y = here[0] + moves.shape[k, move, last, 0], here[1] + moves.shape[k, move, last, 1]
             if not (0.0 <= x < columns and 0.0 <= y < know.check.values.shape[0]):
                 continue
-            state = (int(y) * columns + int(x)) * HEADINGS + ((k + moves.turn[move]) & (HEADINGS - 1))
+            state = _state(x, y, (k + moves.turn[move]) & (HEADINGS - 1), columns)
             known = slot[state] - base
-            if known >= 0 and (
-                nodes.links[known, CLOSED] == 1 or nodes.poses[known, COST] <= cost + abs(moves.length[move]) * moves.price[move]
-            ):
+            if known >= 0 and nodes.links[known, CLOSED] == 1:
                 continue
-            price = _priced(know, ask, here, move)
-            if price < 0.0:
-                continue
-            factor = moves.price[move]
-            if before >= 0 and moves.curvature[move] * moves.curvature[before] < 0.0:
-                factor += change
-            way = cost + abs(moves.length[move]) * price * factor
-            if known >= 0 and nodes.poses[known, COST] <= way:
+            way = _over_move(know, ask, here, (before, move), (cost, nodes.poses[known, COST] if known >= 0 else inf))
+            if way >= best:
                 continue
             yaw = moves.shape[k, move, last, 2]
             left, fringe = _estimate(know, ask, fringe, (x, y, yaw))
