@@ -18,12 +18,15 @@ from uvf.planning.local.goal_checker import GoalChecker, GoalTolerances, turn_to
 from uvf.planning.local.planner import STOP, Limits, LocalPlanner, Situation, State, within
 from uvf.planning.local.swept_stop import safe_share
 from uvf.planning.local.window import WindowSettings, local_window
-from uvf.planning.moving.tracks import MovingObjects
+from uvf.planning.moving.tracks import BESIDE, MovingObjects
 
 Floats = NDArray[np.float64]
 
+FAST = 0.4  # m/s, what moves slower is stopped for
+EDGE = 0.05  # m beyond its radius within which a point belongs to what moves
 LEAVING_COST = 30.0
 """Factor on the cost of ground within the inscribed radius of an obstacle, when it has to be left."""
+EVADED = 6.0  # m within which what moves may have to be evaded
 NEAR = 4.0  # m, farther points cannot be reached before the next scan
 REMEMBERED = 1.0  # m within which the stop heeds obstacles that are out of view
 ROOM_WINDOW = 0.5  # m more than the footprint in which room to turn is looked for
@@ -50,6 +53,8 @@ class ControllerSettings:
     braking: float = 4.0  # m/s^2
     angular_braking: float = 10.0  # rad/s^2
     goal: GoalTolerances = field(default_factory=GoalTolerances)
+    evasion: Limits | None = None
+    """Limits that count while something moves near by, where they differ: what the vehicle can do, not what is asked of it."""
 
 
 class Drive(Enum):
@@ -106,8 +111,21 @@ class LocalController:
         self._travel(pose)
         self.layer.observe(Observation(self._odometer, (x, y), ends, hits))
         self.layer.forget(self._odometer)
-        near = points[(ranges > 0.0) & (np.abs(points) <= NEAR).all(axis=1)]
+        for mx, my, _, _, radius in self.moving.moving():  # it was marked before it was known to move
+            self.layer.free_disc((mx, my), radius + BESIDE)
+        near = points[(ranges > 0.0) & ~self._evaded(ends) & (np.abs(points) <= NEAR).all(axis=1)]
         self._near = np.concatenate((near, transform(inverse(pose), self.layer.lethal_near((pose[0], pose[1]), REMEMBERED))))
+
+    def _evaded(self, ends: Floats) -> NDArray[np.bool_]:
+        """Mask (n,) of the points that belong to what moves so fast that the stop would not help against it: it hits who stands.
+
+        The local planner evades it. Braking in its way would be worse, and so would be braking for what is about to pass.
+        """
+        out = np.zeros(len(ends), dtype=np.bool_)
+        for x, y, vx, vy, radius in self.moving.moving():
+            if hypot(vx, vy) >= FAST:
+                out |= (ends[:, 0] - x) ** 2 + (ends[:, 1] - y) ** 2 < (radius + EDGE) ** 2
+        return out
 
     def _travel(self, pose: Pose2) -> None:
         """What is remembered is known the worse the farther the vehicle has come since: odometry drifts by the way, not by time."""
@@ -144,15 +162,18 @@ class LocalController:
         if len(path) == 0:
             self._last = STOP
             return DriveResult(*STOP, Drive.NO_PATH)
-        state = self._ahead(pose, velocity)
+        obstacles = self.moving.moving()
+        obstacles[:, :2] += settings.delay * obstacles[:, 2:4]
+        limits = self._limits_among(obstacles, pose)
+        state = self._ahead(pose, velocity, limits)
         if self._goal.at_place(state, (float(path[-1, 0]), float(path[-1, 1]))):
             return self._at_goal(state, velocity, heading)
         costs = self.leaving(self.costmap(settings.window.size + 1.0), pose)
         grids = local_window(costs, (pose[0], pose[1]), path, self._factors, settings.window)
-        wanted = self.planner.command(Situation(state, grids, path, self.moving.moving()))
+        wanted = self.planner.command(Situation(state, grids, path, obstacles, limits))
         if wanted is None:
-            return DriveResult(*self._reach(state, velocity, STOP), Drive.NO_VALID_CONTROL)
-        stopped = self._reach(state, velocity, wanted) == STOP and wanted != STOP
+            return DriveResult(*self._reach(state, velocity, STOP, limits), Drive.NO_VALID_CONTROL)
+        stopped = self._reach(state, velocity, wanted, limits) == STOP and wanted != STOP
         return DriveResult(*self._last, Drive.STOPPED if stopped else Drive.DRIVING)
 
     def halt(self) -> tuple[float, float]:
@@ -162,10 +183,15 @@ class LocalController:
 
     def move(self, pose: Pose2, velocity: tuple[float, float], wanted: tuple[float, float]) -> tuple[float, float]:
         """A wanted velocity (m/s, rad/s) within the limits of acceleration; the stop has the last word."""
-        return self._reach(self._ahead(pose, velocity), velocity, wanted)
+        return self._reach(self._ahead(pose, velocity, self.limits), velocity, wanted, self.limits)
 
-    def _reach(self, state: State, velocity: tuple[float, float], wanted: tuple[float, float]) -> tuple[float, float]:
-        reached = within(self.limits, state, wanted, self.settings.period)
+    def _limits_among(self, obstacles: Floats, pose: Pose2) -> Limits:
+        """The limits that count among what moves (m, 5)."""
+        near = np.hypot(obstacles[:, 0] - pose[0], obstacles[:, 1] - pose[1]) <= EVADED
+        return self.settings.evasion if self.settings.evasion is not None and near.any() else self.limits
+
+    def _reach(self, state: State, velocity: tuple[float, float], wanted: tuple[float, float], limits: Limits) -> tuple[float, float]:
+        reached = within(limits, state, wanted, self.settings.period)
         self._last = self.made_safe(reached, velocity)
         return self._last
 
@@ -175,7 +201,7 @@ class LocalController:
             wanted = STOP
         else:
             wanted = turn_to_heading(state, heading, self.limits)
-        if self._reach(state, velocity, wanted) == STOP and wanted != STOP:
+        if self._reach(state, velocity, wanted, self.limits) == STOP and wanted != STOP:
             return DriveResult(*STOP, Drive.STOPPED)
         return DriveResult(*self._last, Drive.ARRIVED if there else Drive.DRIVING)
 
@@ -191,13 +217,13 @@ class LocalController:
         share = min(safe_share(self._near, v, self.footprint, s.stop_margin, brake) for v in (wanted, (faster[0], faster[1])))
         return share * wanted[0], share * wanted[1]
 
-    def _ahead(self, pose: Pose2, velocity: tuple[float, float]) -> State:
+    def _ahead(self, pose: Pose2, velocity: tuple[float, float], limits: Limits) -> State:
         """Where the vehicle will be, and how fast, when the command takes effect.
 
         The last command counts as its velocity, as far as the measured one is near: measurements lag behind.
         """
         d, lag = self.settings.delay, 3 * self.settings.period
-        dv, dw = self.limits.acceleration * lag, self.limits.angular_acceleration * lag
+        dv, dw = limits.acceleration * lag, limits.angular_acceleration * lag
         v = min(max(self._last[0], velocity[0] - dv), velocity[0] + dv)
         w = min(max(self._last[1], velocity[1] - dw), velocity[1] + dw)
         middle = pose[2] + w * d / 2
