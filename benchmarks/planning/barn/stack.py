@@ -17,6 +17,7 @@ from uvf.planning.local.controller import ControllerSettings, LocalController
 from uvf.planning.local.dwa import Dwa, DwaSettings
 from uvf.planning.local.planner import Limits
 from uvf.planning.local.planners import make_local_planner
+from uvf.planning.navigation.directive import Action
 from uvf.planning.navigation.execution import Executor
 from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings
 from uvf.planning.navigation.progress import ProgressSettings
@@ -83,7 +84,11 @@ class MaplessStack:
         if not self.navigator.is_busy:  # a goal that was given up is tried again: what moves frees the way sooner or later
             self.navigator.start(t, self._goal)
         directive = self.navigator.step(t, odom_from_base, self.executor.report)
-        return self.executor.step(t, odom_from_base, (velocity.linear, velocity.angular), directive)
+        twist = velocity.linear, velocity.angular
+        if directive.action == Action.STOP and directive.number == self.executor.report.number:
+            result = controller.hold(odom_from_base, twist)  # while it waits too, it makes way for what moves
+            return result.speed, result.turn_rate
+        return self.executor.step(t, odom_from_base, twist, directive)
 
 
 def move_base_stack(briefing: Briefing) -> MaplessStack:

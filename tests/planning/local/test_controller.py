@@ -67,3 +67,14 @@ def test_a_disc_is_freed_cell_by_cell(centre):
     at = (np.arange(n) + 0.5) * 0.05
     away = np.hypot((at + layer.origin[1] - centre[1])[:, None], at + layer.origin[0] - centre[0])
     assert np.array_equal(layer.cells != LETHAL, away <= 0.4)
+
+
+def test_who_holds_stands_until_something_comes_at_it():
+    calm = watching(lambda t: np.zeros((0, 3)), 0.2)
+    assert calm.hold(HERE, (0.0, 0.0)).speed == 0.0
+    threatened = watching(lambda t: np.array(((4.5 - 1.5 * t, 0.1, 0.4),)), 1.0)
+    velocity = (0.0, 0.0)
+    for _ in range(8):
+        result = threatened.hold(HERE, velocity)
+        velocity = (result.speed, result.turn_rate)
+    assert abs(velocity[0]) > 0.2

@@ -158,16 +158,25 @@ class LocalController:
 
         heading: [rad, the poses' frame] to turn to at the path's end; None = any.
         """
-        settings = self.settings
         if len(path) == 0:
             self._last = STOP
             return DriveResult(*STOP, Drive.NO_PATH)
-        obstacles = self.moving.moving()
-        obstacles[:, :2] += settings.delay * obstacles[:, 2:4]
-        limits = self._limits_among(obstacles, pose)
-        state = self._ahead(pose, velocity, limits)
+        state = self._ahead(pose, velocity, self._limits_now(pose))
         if self._goal.at_place(state, (float(path[-1, 0]), float(path[-1, 1]))):
             return self._at_goal(state, velocity, heading)
+        return self._along(pose, velocity, path)
+
+    def hold(self, pose: Pose2, velocity: tuple[float, float]) -> DriveResult:
+        """Stays where it is as far as nothing that moves comes near: then it makes way."""
+        if not self._is_among_moving(pose):
+            return DriveResult(*self._reach(self._ahead(pose, velocity, self.limits), velocity, STOP, self.limits), Drive.DRIVING)
+        return self._along(pose, velocity, np.array((pose[:2],)))
+
+    def _along(self, pose: Pose2, velocity: tuple[float, float], path: Floats) -> DriveResult:
+        settings, limits = self.settings, self._limits_now(pose)
+        state = self._ahead(pose, velocity, limits)
+        obstacles = self.moving.moving()
+        obstacles[:, :2] += settings.delay * obstacles[:, 2:4]
         costs = self.leaving(self.costmap(settings.window.size + 1.0), pose)
         grids = local_window(costs, (pose[0], pose[1]), path, self._factors, settings.window)
         wanted = self.planner.command(Situation(state, grids, path, obstacles, limits))
@@ -185,10 +194,12 @@ class LocalController:
         """A wanted velocity (m/s, rad/s) within the limits of acceleration; the stop has the last word."""
         return self._reach(self._ahead(pose, velocity, self.limits), velocity, wanted, self.limits)
 
-    def _limits_among(self, obstacles: Floats, pose: Pose2) -> Limits:
-        """The limits that count among what moves (m, 5)."""
-        near = np.hypot(obstacles[:, 0] - pose[0], obstacles[:, 1] - pose[1]) <= EVADED
-        return self.settings.evasion if self.settings.evasion is not None and near.any() else self.limits
+    def _is_among_moving(self, pose: Pose2) -> bool:
+        obstacles = self.moving.moving()
+        return bool((np.hypot(obstacles[:, 0] - pose[0], obstacles[:, 1] - pose[1]) <= EVADED).any())
+
+    def _limits_now(self, pose: Pose2) -> Limits:
+        return self.settings.evasion if self.settings.evasion is not None and self._is_among_moving(pose) else self.limits
 
     def _reach(self, state: State, velocity: tuple[float, float], wanted: tuple[float, float], limits: Limits) -> tuple[float, float]:
         reached = within(limits, state, wanted, self.settings.period)
