@@ -18,6 +18,7 @@ SIZES: dict[type[Message], int] = {
     m.OctreeMap: 128 * MB,
     m.LaserScan: 2 * MB,
     m.PosesInFrame: 8 * MB,
+    m.PreviewReply: 8 * MB,
     m.FrameTransforms: MB,
     m.Clock: MB,
     m.Done: MB,
@@ -41,6 +42,7 @@ LENGTHS: dict[str, int] = {
     "foxglove.LaserScan.ranges": 200_000,
     "foxglove.LaserScan.intensities": 200_000,
     "foxglove.PosesInFrame.poses": 100_000,
+    "uvf.v1.PreviewReply.poses": 100_000,
     "foxglove.PoseInFrame.frame_id": 100,
     "foxglove.FrameTransform.parent_frame_id": 100,
     "foxglove.FrameTransform.child_frame_id": 100,
@@ -69,6 +71,7 @@ PLACE = 2e5  # m from the world's origin; beyond, a flat world is none, or someb
 MOST: dict[str, float] = {
     "uvf.v1.MissionItem.position": PLACE,
     "uvf.v1.GoalRequest.position": PLACE,
+    "uvf.v1.PreviewRequest.position": PLACE,
     "uvf.v1.OrbitRequest.centre": PLACE,
     "uvf.v1.HomeCommand.position": PLACE,
     "uvf.v1.LineSetpoint.origin": PLACE,

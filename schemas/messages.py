@@ -48,6 +48,7 @@ from schemas.v1.mission_pb2 import (
     OrbitRequest,
     SetCurrentRequest,
 )
+from schemas.v1.navigation_pb2 import NavDirective, NavReport, PreviewReply, PreviewRequest
 from schemas.v1.octree_pb2 import OctreeMap, OctreeSaveRequest
 from schemas.v1.rally_pb2 import RallyPoints, RallyRequest
 from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
@@ -132,6 +133,8 @@ __all__ = [
     "Mode",
     "ModeRequest",
     "NavState",
+    "NavDirective",
+    "NavReport",
     "NavStatus",
     "OctreeMap",
     "OctreeSaveRequest",
@@ -149,6 +152,8 @@ __all__ = [
     "PosesInFrame",
     "Process",
     "Processes",
+    "PreviewReply",
+    "PreviewRequest",
     "Quaternion",
     "RallyPoints",
     "RallyRequest",

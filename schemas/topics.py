@@ -152,6 +152,8 @@ NAV_STATE = Topic(f"{_V}/nav/state", m.NavState, 50, _Q.STATE, "best estimate of
 QUALITY = Topic(f"{_V}/nav/quality", m.EstimateQuality, 2, _Q.STATE, "how far the estimate may be off, and how well measurements fit")
 PATH = Topic(f"{_V}/nav/path", m.PosesInFrame, 2, _Q.STATE, "path being followed, world frame")
 NAV_STATUS = Topic(f"{_V}/nav/status", m.NavStatus, 2, _Q.STATE, "what the planner is doing", kept=True)
+NAV_DIRECTIVE = Topic(f"{_V}/nav/directive", m.NavDirective, 4, _Q.STATE, "what the tracker is to do: follow the path, or recover")
+NAV_REPORT = Topic(f"{_V}/nav/report", m.NavReport, 10, _Q.STATE, "how the tracker fares with it")
 MAP_POSE = Topic(
     f"{_V}/nav/map_pose", m.MapFix, 5, _Q.STATE, "where the newest scan places the vehicle in its map, and how surely", kept=True
 )
@@ -208,6 +210,7 @@ GO_AROUND = Request(f"{_V}/srv/go_around", m.GoAroundRequest, m.Reply, "give up 
 VEHICLE_COMMAND = Request(
     f"{_V}/srv/vehicle_command", m.VehicleCommandRequest, m.Reply, "take off to a height; speed, altitude, home, camera; begin anew"
 )
+PREVIEW = Request(f"{_V}/srv/preview", m.PreviewRequest, m.PreviewReply, "is there a way to a place, and what is it like?")
 CANCEL = Request(f"{_V}/srv/cancel", m.CancelRequest, m.Reply, "give up the goal that is being driven to")
 SET_MISSION = Request(f"{_V}/srv/mission", m.MissionRequest, m.Reply, "replace the mission")
 SET_FENCE = Request(f"{_V}/srv/fence", m.FenceRequest, m.Reply, "replace the fence, or take it away")

@@ -6,11 +6,12 @@
 from functools import partial
 from pathlib import Path
 
+from benchmarks.planning import movingai, nav2maps
 from benchmarks.planning.barn import cases as barn
 from launch.commands.bench import Case
 from launch.commands.bench_selection import Selection
 
-MEASURED = {"barn": barn.static_runs, "dynabarn": barn.dynamic_runs}
+MEASURED = {"barn": barn.static_runs, "dynabarn": barn.dynamic_runs, "movingai": movingai.measure, "nav2maps": nav2maps.measure}
 """By case: a function of the selection and the data folder that returns rows."""
 OPTIONS = {"barn": barn.OPTIONS, "dynabarn": barn.OPTIONS}
 

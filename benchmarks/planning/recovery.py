@@ -28,11 +28,12 @@ from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import LETHAL
+from uvf.planning.global_planner import GlobalPlanner, PlannedBody
 from uvf.planning.local.controller import ControllerSettings, LocalController
 from uvf.planning.local.mppi import Mppi, MppiSettings
 from uvf.planning.navigation.execution import Executor
 from uvf.planning.navigation.failures import Failure
-from uvf.planning.navigation.map_routes import MapRoutes
+from uvf.planning.navigation.global_routes import GlobalRoutes
 from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings, RouteSource, Status
 from uvf.planning.navigation.routes import LayerRoutes
 
@@ -151,7 +152,11 @@ class _Trial:
             rows = slice(math.floor((y - b / 2 - origin[1]) / RESOLUTION), math.ceil((y + b / 2 - origin[1]) / RESOLUTION))
             columns = slice(math.floor((x - a / 2 - origin[0]) / RESOLUTION), math.ceil((x + a / 2 - origin[0]) / RESOLUTION))
             cells[max(rows.start, 0) : rows.stop, max(columns.start, 0) : columns.stop] = 100
-        return MapRoutes(cells, (RESOLUTION, origin), self._controller)
+        settings = self._controller.settings
+        body = PlannedBody(self._controller.footprint.padded(settings.margin), settings.inflation, settings.cost_travel_multiplier)
+        routes = GlobalRoutes(GlobalPlanner(body), self._controller.layer)
+        routes.take(cells, (RESOLUTION, origin))
+        return routes
 
     def run(self) -> Outcome:
         """To the end."""

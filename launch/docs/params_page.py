@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from launch.docs.tables import table
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.planner.planner_service import PlannerParams
+from services.planner.params import PlannerParams
 from services.planner.tracker_service import TrackerParams
 from services.slam.mapping_service import MappingParams
 from services.slam.octree.octree_service import OctreeParams

@@ -157,7 +157,7 @@ class CancelRequest(_message.Message):
     def __init__(self, source: _Optional[str] = ...) -> None: ...
 
 class NavStatus(_message.Message):
-    __slots__ = ("timestamp", "state", "job", "goal", "distance_left", "reason", "explored")
+    __slots__ = ("timestamp", "state", "job", "goal", "distance_left", "reason", "explored", "time_left", "recoveries")
     class State(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
         IDLE: _ClassVar[NavStatus.State]
@@ -181,6 +181,8 @@ class NavStatus(_message.Message):
     DISTANCE_LEFT_FIELD_NUMBER: _ClassVar[int]
     REASON_FIELD_NUMBER: _ClassVar[int]
     EXPLORED_FIELD_NUMBER: _ClassVar[int]
+    TIME_LEFT_FIELD_NUMBER: _ClassVar[int]
+    RECOVERIES_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     state: NavStatus.State
     job: str
@@ -188,4 +190,6 @@ class NavStatus(_message.Message):
     distance_left: float
     reason: str
     explored: float
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., state: _Optional[_Union[NavStatus.State, str]] = ..., job: _Optional[str] = ..., goal: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., distance_left: _Optional[float] = ..., reason: _Optional[str] = ..., explored: _Optional[float] = ...) -> None: ...
+    time_left: float
+    recoveries: int
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., state: _Optional[_Union[NavStatus.State, str]] = ..., job: _Optional[str] = ..., goal: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., distance_left: _Optional[float] = ..., reason: _Optional[str] = ..., explored: _Optional[float] = ..., time_left: _Optional[float] = ..., recoveries: _Optional[int] = ...) -> None: ...

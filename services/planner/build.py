@@ -1,20 +1,25 @@
 """Planner and tracker for every ground vehicle of the mission."""
 
-from math import hypot
-
 import numpy as np
 
-from services.planner.planner_service import PlannerParams, PlannerService
-from services.planner.tracker_service import TrackerParams, TrackerService
+from services.planner.params import PlannerParams
+from services.planner.planner_service import PlannedVehicle, PlannerService
+from services.planner.scan_placing import ScanPlacer
+from services.planner.tracker_service import FARTHEST, TrackerParams, TrackerService
 from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2
 from uvf.maths.se3 import Transform
 from uvf.models.scenario import MissionVehicle, Scenario
+from uvf.models.urdf.model import load_urdf
+from uvf.models.urdf.outline import plan_outline
+from uvf.models.vehicle.file import GroundBody
 from uvf.models.yaml_data import BadInput
-from uvf.planning.collision_check import safe_share
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.global_planner import GlobalPlanner, PlannedBody
+from uvf.planning.local.controller import ControllerSettings, LocalController
+from uvf.planning.local.mppi import Mppi, MppiSettings
+from uvf.planning.local.planner import Limits
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.sensors.fitted import sweeping_of
 
@@ -33,22 +38,37 @@ def _hosts(member: MissionVehicle) -> list[ServiceInstance]:
         raise BadInput(f"{member.folder / 'vehicle.yaml'}: the planner needs 'ground:' and sensors: lidar")
     world_from_map = Pose2(start.x, start.y, start.yaw)
     base_from_lidar = Transform(from_euler(*lidar.mount.rpy), np.array(lidar.mount.xyz))
-    planner = member.params("planner", PlannerParams)
-    tracker = member.params("tracker", TrackerParams)
-    return [
-        ServiceInstance(
-            PlannerService,
-            lambda: PlannerService(world_from_map, body.radius, member.entry.job.explore, planner, hypot(*lidar.mount.xyz[:2])),
-            member.name,
-        ),
-        ServiceInstance(TrackerService, lambda: TrackerService(body, base_from_lidar, tracker, sweeping_of(lidar)), member.name),
-    ]
+    sweeping, footprint = sweeping_of(lidar), _footprint(member, body)
+    planner, tracker = member.params("planner", PlannerParams), member.params("tracker", TrackerParams)
+    speed = min(tracker.speed, body.max_linear)
+
+    def planner_service() -> PlannerService:
+        placer = ScanPlacer(base_from_lidar, sweeping, FARTHEST)
+        return PlannerService(world_from_map, PlannedVehicle(footprint, placer, speed, member.entry.job.explore), planner)
+
+    def tracker_service() -> TrackerService:
+        return TrackerService(body, footprint, base_from_lidar, tracker, sweeping)
+
+    return [ServiceInstance(PlannerService, planner_service, member.name), ServiceInstance(TrackerService, tracker_service, member.name)]
+
+
+def _footprint(member: MissionVehicle, body: GroundBody) -> RobotFootprint:
+    """The outline of the URDF's collision shapes, or the circle of vehicle.yaml where it has none."""
+    outline = plan_outline(load_urdf(member.folder / body.urdf))
+    return RobotFootprint.circle(body.radius) if outline is None else RobotFootprint.polygon(outline)
 
 
 def _warm_up() -> None:
     """Compiles the kernels, or loads them from their cache, before the first step."""
-    navigator = GlobalPlanner(PlannedBody(RobotFootprint.circle(0.1), Inflation(0.3, 5.0)))
-    navigator.see(np.zeros((20, 20), dtype=np.int8), (0.05, (0.0, 0.0)))
-    navigator.plan((0.2, 0.2), (0.8, 0.8))
-    navigator.refusal((0.2, 0.2), (0.8, 0.8))
-    safe_share(np.ones((1, 2)), (0.1, 0.1), 0.1, (0.1, 1.0))
+    footprint = RobotFootprint.circle(0.1)
+    planner = GlobalPlanner(PlannedBody(footprint, Inflation(0.3, 5.0)))
+    planner.see(np.zeros((20, 20), dtype=np.int8), (0.05, (0.0, 0.0)))
+    planner.plan((0.2, 0.2), (0.8, 0.8))
+    planner.refusal((0.2, 0.2), (0.8, 0.8))
+    limits = Limits(-0.1, 0.2, 1.0, 1.0, 2.0, 1.0)
+    controller = LocalController(footprint, limits, Mppi(limits, footprint, MppiSettings(samples=200)), ControllerSettings())
+    angles = np.linspace(-3.0, 3.0, 60)
+    rays, ranges = np.column_stack((np.cos(angles), np.sin(angles))), np.ones(60)
+    for t in (0.0, 0.1):
+        controller.see(t, Pose2(0.0, 0.0, 0.0), (0.0, 0.0), rays, ranges)
+    controller.drive(Pose2(0.0, 0.0, 0.0), (0.0, 0.0), np.array(((0.0, 0.0), (0.5, 0.0))))

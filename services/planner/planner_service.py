@@ -1,10 +1,9 @@
-"""Map, pose and job -> the path to drive, four times a second; plans anew only when the map or the job has changed."""
+"""Map, pose and job -> what the tracker is to do, four times a second: a path to follow, or a recovery."""
 
-from math import hypot, inf, isinf, isnan
-from typing import Annotated
+from dataclasses import dataclass
+from math import hypot, inf, isfinite, isinf, isnan
 
 import numpy as np
-from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
@@ -14,59 +13,69 @@ from schemas.messages import (
     Fence,
     GoalRequest,
     Grid,
+    LaserScan,
     Mission,
     MissionProgress,
     Mode,
     ModeRequest,
+    NavDirective,
+    NavReport,
     NavStatus,
-    Pose,
     PoseInFrame,
     PosesInFrame,
+    PreviewReply,
+    PreviewRequest,
     RallyPoints,
     Reply,
-    Vector3,
     VehicleStatus,
 )
+from services.planner.directives import directive_message, report_of
+from services.planner.goal_desk import GoalDesk, line_of
 from services.planner.jobs import IDLE, Goal, Job, Orders, ReturnPoints, choose, home_of, mission_target, not_now
+from services.planner.params import PlannerParams
+from services.planner.scan_placing import ScanPlacer
 from uvf.maths.rotations import wrap
-from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse, transform
-from uvf.models.keys import key
-from uvf.models.params import Params
+from uvf.maths.se2 import Pose2, compose, inverse, transform
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation
+from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
 from uvf.planning.exploration import Explorer, Patrol
 from uvf.planning.frontiers import FrontierWeights
-from uvf.planning.global_planner import GlobalPlanner, PlannedBody, PlannedPath
-from uvf.planning.smoothing import length
-from uvf.runtime.contract.declaration import Reads, Writes, answers, call, optional, replies, request, topic
+from uvf.planning.global_planner import NO_PLACE, GlobalPlanner, PlannedBody
+from uvf.planning.navigation.directive import Action, Directive
+from uvf.planning.navigation.global_routes import GlobalRoutes
+from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings, Status
+from uvf.planning.navigation.progress import ProgressSettings
+from uvf.runtime.contract.declaration import Reads, Writes, answers, call, every, optional, replies, request, topic
 from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, pose2_of, seconds, stamp
-from uvf.runtime.messages.fences import fencing
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
-Positive = Annotated[float, Meta(gt=0)]
 
-REPLAN_PERIOD = 2.0  # s, after which a path that failed is tried again
 FRONTIER_VIEW = 0.4  # m from a frontier, from where it is seen well enough
-TRIES = 3  # at a place of the mission or the way home, before the vehicle holds
+SIZE, RESOLUTION = 8.0, 0.05  # m, of the window in which obstacles are remembered that the map does not show
+LIFETIME = 30.0  # s that such an obstacle is remembered without being seen
+AGAIN = 10.0  # s after which a place of the mission, or home, is tried again where nobody has changed the mode
+PUSHED = 3.0  # times the tolerance from a place that was reached, from where it is driven to again
+STATES = {
+    Status.IDLE: NavStatus.IDLE,
+    Status.FOLLOWING: NavStatus.DRIVING,
+    Status.RECOVERING: NavStatus.RECOVERING,
+    Status.REACHED: NavStatus.REACHED,
+    Status.ABORTED: NavStatus.BLOCKED,
+    Status.CANCELLED: NavStatus.CANCELLED,
+}
 
 
-class PlannerParams(Params, frozen=True):
-    """Parameters of the planner."""
+@dataclass(frozen=True)
+class PlannedVehicle:
+    """What the planner has to know of its vehicle: outline, lidar, speed on straight parts [m/s], and whether it explores."""
 
-    margin: Annotated[Positive, key("m", "Distance kept from obstacles beyond the vehicle's radius.")] = 0.03
-    inflation_radius: Annotated[Positive, key("m", "Distance from obstacles beyond which a path costs no more.")] = 0.55
-    cost_scaling_factor: Annotated[Positive, key("1/m", "Rate at which the cost decays with the distance from an obstacle.")] = 6.0
-    cost_travel_multiplier: Annotated[float, Meta(ge=0), key("", "Weight of costs beside length; 0: the shortest path.")] = 5.0
-    goal_tolerance: Annotated[Positive, key("m", "Distance at which a goal is reached.")] = 0.12
-    look_tolerance: Annotated[Positive, key("m", "Distance at which a frontier is reached; it only has to be seen.")] = 0.3
-    wait_at_goal: Annotated[float, Meta(ge=0), key("s", "Time at an operator's goal, reached or cancelled, before the job continues.")] = (
-        5.0
-    )
-    patience: Annotated[Positive, key("s", "Time without progress before the goal is given up.")] = 8.0
-    min_frontier_size: Annotated[int, Meta(ge=1), key("cells", "Smallest frontier that is explored.")] = 6
-    frontier_gain: Annotated[float, Meta(ge=0), key("cells", "Path length that a cell of frontier is worth.")] = 0.5
+    footprint: RobotFootprint
+    placer: ScanPlacer
+    speed: float
+    explores: bool
 
 
 class PlannerService(Service):
@@ -77,10 +86,12 @@ class PlannerService(Service):
     given_up = "the vehicle stands where it would drive by itself"
 
     class Inputs(Reads):
-        """Pose, map, mission, and requests for goals."""
+        """Poses, map, scan, the tracker's report, mission, and requests for goals."""
 
-        pose: PoseInFrame = topic(topics.POSE)
+        pose: list[PoseInFrame] = every(topics.POSE)
         map: Grid = topic(topics.MAP)
+        scan: LaserScan | None = optional(topics.SCAN)
+        report: NavReport | None = optional(topics.NAV_REPORT)
         status: VehicleStatus | None = optional(topics.STATUS)
         mission: Mission | None = optional(topics.MISSION)
         progress: MissionProgress | None = optional(topics.PROGRESS)
@@ -88,16 +99,19 @@ class PlannerService(Service):
         rally: RallyPoints | None = optional(topics.RALLY)
         goal: list[GoalRequest] = request(topics.GOAL)
         cancel: list[CancelRequest] = request(topics.CANCEL)
+        preview: list[PreviewRequest] = request(topics.PREVIEW)
         set_mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
 
     class Outputs(Writes):
-        """Path, status, and replies."""
+        """Directive and path, status, and replies."""
 
+        directive: NavDirective | None = topic(topics.NAV_DIRECTIVE)
         path: PosesInFrame | None = topic(topics.PATH)
         nav_status: NavStatus | None = topic(topics.NAV_STATUS)
         events: list[Event] | None = topic(topics.EVENTS.by("planner"))
         goal: list[Reply] = replies(topics.GOAL)
         cancel: list[Reply] = replies(topics.CANCEL)
+        preview: list[PreviewReply] = replies(topics.PREVIEW)
         set_mode: list[ModeRequest] = call(topics.SET_MODE)
 
     class Recalls(Reads):
@@ -107,64 +121,72 @@ class PlannerService(Service):
 
     params: PlannerParams
 
-    def __init__(self, world_from_map: Pose2, radius: float, explores: bool, params: PlannerParams, sensor_offset: float = 0.0) -> None:
-        """radius: the vehicle's [m]; sensor_offset: from its centre to the lidar that draws the map [m], in the plane."""
+    def __init__(self, world_from_map: Pose2, vehicle: PlannedVehicle, params: PlannerParams) -> None:
         self.params = params
-        self._sensor_offset = sensor_offset
-        self._world_from_map = world_from_map
-        self._map_from_world = inverse(world_from_map)
-        self._explores = explores
+        self._world_from_map, self._map_from_world = world_from_map, inverse(world_from_map)
+        self._vehicle, self._footprint = vehicle, vehicle.footprint
+        self._placer = vehicle.placer
+        self._here: Pose2 | None = None
+        self._layer = ObstacleLayer(SIZE, RESOLUTION, LIFETIME)
+        self._planner = GlobalPlanner(self._body)
+        self._routes = GlobalRoutes(self._planner, self._layer)
+        self._navigator = Navigator(self._routes, self._patience)
+        self._explorer, self._patrol = Explorer(self._taste), Patrol()
         self._return_points = ReturnPoints()
-        self._radius = radius
-        self._navigator = GlobalPlanner(self._body)
-        self._explorer = Explorer(self._taste)
-        self._patrol = Patrol()
         self._map_stamp = -1.0
         self._job: Job = IDLE
         self._goal: Goal | None = None
         self._target: Point | None = None
-        self._plan = PlannedPath(None)
-        self._planned_at = -np.inf
+        self._reason = ""
+        """Why there is nowhere to go."""
         self._ended_at: float | None = None
         """When a person's goal was reached or cancelled, as ``_ending`` says."""
         self._ending: NavStatus.State = NavStatus.REACHED
-        self._is_there = False
         self._shut_in = False
         """Nothing can be planned from where the vehicle stands; told when it begins."""
-        self._progress_at = 0.0
-        self._progress_pose: Pose2 = IDENTITY
-        self._tries = 0
+        self._try_at = inf
+        """When a place that was given up is tried again."""
+        self._told = 0
+        self._cleared = -1
         self._asks: list[ModeRequest] = []
         self._events: list[Event] = []
-        self._bounds: Fence | None = None
+        self._desk = GoalDesk(self._planner, world_from_map, vehicle.speed)
 
     def step(self, t: float, now: Inputs) -> Outputs:
-        """One cycle at ``t`` [s, simulation]: chooses the job, plans anew where map or job have changed, and watches the progress."""
-        here = compose(self._map_from_world, pose2_of(now.pose.pose))
-        self._explorer.taste = self._taste
-        self._bounds = now.bounds
-        changed = self._navigator.fit(self._body) | self._take_map(now.map) | self._navigator.stand(here[:2])
+        """One cycle at ``t`` [s, simulation]: chooses the job and its place, plans, watches the progress, and recovers."""
+        self._move(now.pose)
+        if self._here is None:
+            return self.stale(t, ("pose",))
+        here, self._desk.bounds = self._here, now.bounds
+        self._fit()
+        changed = self._look(now.map, now.scan, here)
         goal_replies = self._ask_all(t, here, now.goal, now.status)
+        place = compose(self._world_from_map, here)[:2]
         home = home_of(now.status) or self._world_from_map[:2]
-        return_point = self._return_points.step(now.status, (now.pose.pose.position.x, now.pose.pose.position.y), home, now.rally)
-        job = choose(now.status, self._goal, mission_target(now.mission, now.progress, home), Orders(return_point, self._explores))
+        return_point = self._return_points.step(now.status, place, home, now.rally)
+        target = mission_target(now.mission, now.progress, home)
+        job = choose(now.status, self._goal, target, Orders(return_point, self._vehicle.explores))
         if job != self._job:
             self._begin(t, job)
-            changed = True
         cancel_replies = [self._cancel(t, request) for request in now.cancel]
-        failed = self._plan.path is None and t - self._planned_at >= REPLAN_PERIOD
-        if self._ended_at is None and (changed or failed):
-            self._replan(t, here)
-        self._watch(t, here, now.status)
+        self._aim(t, here, changed)
+        if now.status is None or now.status.command_source != "planner":
+            self._navigator.pause(t, here)
+        directive = self._navigator.step(t, here, report_of(now.report))
+        self._heed(directive, here)
+        self._follow_up(t)
+        self._tell_recoveries()
         events, self._events = self._events, []
         asks, self._asks = self._asks, []
         return self.Outputs(
-            path=self._path(t),
-            nav_status=self._nav_status(t, here),
+            directive=directive_message(t, directive),
+            path=self._path(t, directive),
+            nav_status=self._nav_status(t),
             events=events,
             set_mode=asks,
             goal=goal_replies,
             cancel=cancel_replies,
+            preview=self._desk.previews(here, now.preview),
         )
 
     def recall(self, left: Recalls) -> None:
@@ -177,9 +199,10 @@ class PlannerService(Service):
             self._goal = Goal((left.nav_status.goal.x, left.nav_status.goal.y))
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
-        """Outputs at ``t`` [s, simulation] without a fresh pose or a map: no path, so that the tracker stops."""
+        """Outputs at ``t`` [s, simulation] without a fresh pose or a map: the tracker is to stop."""
         reason = f"waiting for {', '.join(missing)}"
         return self.Outputs(
+            directive=NavDirective(timestamp=stamp(t)),
             path=PosesInFrame(timestamp=stamp(t), frame_id="world"),
             nav_status=NavStatus(timestamp=stamp(t), state=NavStatus.IDLE, job=self._job.name, reason=reason),
         )
@@ -187,21 +210,45 @@ class PlannerService(Service):
     @property
     def _body(self) -> PlannedBody:
         params = self.params
-        footprint = RobotFootprint.circle(self._radius + params.margin)
         inflation = Inflation(params.inflation_radius, params.cost_scaling_factor)
-        return PlannedBody(footprint, inflation, params.cost_travel_multiplier, self._sensor_offset)
+        offset = self._placer.offset
+        return PlannedBody(self._footprint.padded(params.margin), inflation, params.cost_travel_multiplier, offset)
 
     @property
     def _taste(self) -> FrontierWeights:
         return FrontierWeights(self.params.min_frontier_size, FRONTIER_VIEW, self.params.frontier_gain)
 
-    def _take_map(self, grid: Grid) -> bool:
-        taken_at = seconds(grid.timestamp)
-        if taken_at == self._map_stamp:
-            return False
-        self._map_stamp = taken_at
-        self._navigator.see(occupancy_cells(grid), (grid.cell_size.x, (grid.pose.position.x, grid.pose.position.y)))
-        return True
+    @property
+    def _patience(self) -> NavigatorSettings:
+        progress = ProgressSettings(movement_time_allowance=self.params.patience)
+        radius = self._footprint.circumscribed_radius
+        return NavigatorSettings(replan_period=self.params.replan_period, circumscribed_radius=radius, progress=progress)
+
+    def _fit(self) -> None:
+        """Heeds the parameters."""
+        self._explorer.taste = self._taste
+        self._navigator.fit(self._patience)
+        if self._planner.fit(self._body):
+            self._navigator.replan()
+
+    def _move(self, poses: list[PoseInFrame]) -> None:
+        for message in poses:
+            self._here = compose(self._map_from_world, pose2_of(message.pose))
+            self._placer.move(seconds(message.timestamp), self._here)
+
+    def _look(self, grid: Grid, scan: LaserScan | None, here: Pose2) -> bool:
+        """Takes map and scan; whether there is something new to plan by."""
+        taken_at, new = seconds(grid.timestamp), False
+        if taken_at != self._map_stamp:
+            self._map_stamp, new = taken_at, True
+            self._routes.take(occupancy_cells(grid), (grid.cell_size.x, (grid.pose.position.x, grid.pose.position.y)))
+        if scan is not None and (seen := self._placer.place(scan)) is not None:
+            self._layer.recentre((here[0], here[1]))
+            eye = transform(seen.pose, np.array((seen.eye,)))[0]
+            hits = (seen.ranges > 0.0) & (seen.ranges <= self._placer.farthest)
+            self._layer.observe(BeamObservation(seen.t, seen.t, (eye[0], eye[1]), transform(seen.pose, seen.points), hits))
+            self._layer.forget(seen.t)
+        return self._routes.look(here[:2]) or new
 
     def _ask_all(self, t: float, here: Pose2, requests: list[GoalRequest], status: VehicleStatus | None) -> list[Reply]:
         """Of several goals in one step the last that can be driven to counts; only that one is told of."""
@@ -214,19 +261,11 @@ class PlannerService(Service):
             self._tell(t, f"goal ({last.position.x:.1f}, {last.position.y:.1f})", f"asked by {last.source or 'unknown'}")
         return replies
 
-    def _ask(self, here: Pose2, request: GoalRequest, status: VehicleStatus | None) -> Reply:
-        wanted = (request.position.x, request.position.y)
-        reason = not_now(status) or self._beyond(wanted) or self._navigator.refusal(here[:2], self._in_map(wanted))
-        if isinf(request.yaw):
+    def _ask(self, here: Pose2, wanted: GoalRequest, status: VehicleStatus | None) -> Reply:
+        reason = not_now(status) or self._desk.refusal(here, wanted.position)
+        if isinf(wanted.yaw):
             reason = "the heading is infinite; give it in rad, or NaN for any"
         return Reply(accepted=not reason, reason=reason)
-
-    def _beyond(self, wanted: Point) -> str:
-        """Why a place lies too near to the fence, or outside of it; empty if it does not."""
-        room = inf if self._bounds is None else fencing(self._bounds).region.at(wanted)
-        if room < 0:
-            return f"the goal is {-room:.1f} m outside of the fence"
-        return f"the goal is {room:.2f} m from the fence, too near" if room < self._radius + self.params.margin else ""
 
     def _cancel(self, t: float, request: CancelRequest) -> Reply:
         """The vehicle stops; it stays as long as at a goal that was reached before its job goes on."""
@@ -242,141 +281,132 @@ class PlannerService(Service):
 
     def _end(self, t: float, ending: NavStatus.State, reason: str) -> None:
         """A person's goal has come to its end; without a path the vehicle stands."""
-        self._ended_at, self._ending = t, ending
-        self._plan = PlannedPath(None, reason)
+        self._ended_at, self._ending, self._reason = t, ending, reason
+        self._navigator.cancel(t)
 
     def _begin(self, t: float, job: Job) -> None:
         if job.name != self._job.name:
             self._tell(t, f"job: {job.name}", "")
-        self._job = job
+        self._job, self._target, self._reason = job, None, ""
         self._shut_in = False
-        self._ended_at = None
-        self._progress_at = t
-        self._tries = 0
+        self._ended_at, self._try_at = None, inf
         self._explorer.goal = None
 
-    def _replan(self, t: float, here: Pose2) -> None:
-        self._planned_at = t
-        if self._job == IDLE:
-            self._target, self._plan = None, PlannedPath(None, "no job")
-        elif self._job.target is not None:
-            self._target = self._in_map(self._job.target)
-            self._plan = self._navigator.plan(here[:2], self._target, self._job.allow_unknown)
-        else:
-            self._replan_exploring(t, here)
+    def _aim(self, t: float, here: Pose2, changed: bool) -> None:
+        """Where the job leads now."""
+        if self._ended_at is not None:
+            if t - self._ended_at >= self.params.wait_at_goal:
+                self._goal = None
+        elif self._job == IDLE:
+            self._navigator.cancel(t)
+            self._reason = "no job"
+        elif self._job.target is None:
+            if changed or self._target is None or not self._navigator.is_busy:
+                self._aim_exploring(t, here)
+        elif self._target is None or t >= self._try_at or self._is_pushed_away(here):
+            self._try_at = inf
+            self._go(t, self._desk.in_map(self._job.target), self.params.goal_tolerance)
 
-    def _replan_exploring(self, t: float, here: Pose2) -> None:
-        ways, costs, reason = self._navigator.ways(here[:2]), self._navigator.costs, self._navigator.shut_in(here[:2])
+    def _go(self, t: float, target: Point, tolerance: float) -> None:
+        self._target, self._reason = target, ""
+        if not (isfinite(target[0]) and isfinite(target[1])):
+            self._navigator.cancel(t)
+            self._reason = NO_PLACE
+            return
+        self._routes.allow_unknown = self._job.allow_unknown
+        yaw = None if self._job.yaw is None else wrap(self._job.yaw - self._world_from_map[2])
+        self._navigator.start(t, NavigationGoal(*target, yaw, tolerance))
+
+    def _is_pushed_away(self, here: Pose2) -> bool:
+        """Whether the vehicle was where it should be, and is no longer."""
+        if self._target is None or self._navigator.feedback.status != Status.REACHED:
+            return False
+        return hypot(here[0] - self._target[0], here[1] - self._target[1]) > PUSHED * self.params.goal_tolerance
+
+    def _aim_exploring(self, t: float, here: Pose2) -> None:
+        ways, costs, reason = self._planner.ways(here[:2]), self._planner.costs, self._planner.shut_in(here[:2])
         if reason and not self._shut_in:
             self._tell(t, "explore: nothing can be planned", reason, Event.WARNING)
         self._shut_in = bool(reason)
         if reason or ways is None or costs is None:
-            self._target, self._plan = None, PlannedPath(None, reason)
+            self._navigator.cancel(t)
+            self._target, self._reason = None, reason
             return
-        frontier = self._explorer.choose(t, costs, ways)
-        self._target = frontier or self._patrol.choose(here[:2], costs, ways)
-        self._plan = self._navigator.plan(here[:2], self._target) if self._target else PlannedPath(None, "everything is explored")
-        if self._target is not None and self._plan.path is None:
-            self._done_with_target(t)
+        target = self._explorer.choose(t, costs, ways) or self._patrol.choose(here[:2], costs, ways)
+        if target is None:
+            self._navigator.cancel(t)
+            self._target, self._reason = None, "everything is explored"
+        elif target != self._target or not self._navigator.is_busy:
+            self._go(t, target, self.params.look_tolerance)
 
-    def _done_with_target(self, t: float) -> None:
-        """Another frontier or place of the patrol is to be chosen."""
-        self._explorer.blacklist_goal(t)
-        self._patrol.reached()
+    def _heed(self, directive: Directive, here: Pose2) -> None:
+        """Forgets what the tracker is to forget."""
+        if directive.clear_beyond is not None and directive.number != self._cleared:
+            self._cleared = directive.number
+            self._layer.clear(directive.clear_beyond, (here[0], here[1]))
 
-    def _watch(self, t: float, here: Pose2, status: VehicleStatus | None) -> None:
-        """Has the goal been reached, or does the vehicle get nowhere?"""
-        if self._ended_at is not None:
-            if t - self._ended_at >= self.params.wait_at_goal:
-                self._goal = None
+    def _follow_up(self, t: float) -> None:
+        """What follows when the place is reached, or given up."""
+        if self._target is None or self._ended_at is not None:
             return
-        if self._target is None:
-            return
-        self._is_there = self._is_near(here)
-        if self._is_there:
-            self._arrive(t, here)
-            return
-        last = self._progress_pose
-        moved = hypot(here[0] - last[0], here[1] - last[1]) > 0.1 or abs(wrap(here[2] - last[2])) > 0.3
-        held = status is None or status.command_source != "planner"
-        if moved or held:
-            self._progress_at, self._progress_pose = t, here
-        elif t - self._progress_at > self.params.patience:
-            self._give_up(t, self._plan.reason or "no progress")
-
-    def _is_near(self, here: Pose2) -> bool:
-        """Reached, in the place and in the wanted heading."""
-        tolerance = self.params.look_tolerance if self._job.name == "explore" else self.params.goal_tolerance
-        if self._target is None or not hypot(here[0] - self._target[0], here[1] - self._target[1]) <= tolerance:
-            return False
-        wanted = self._job.yaw
-        return wanted is None or abs(np.sin((here[2] + self._world_from_map[2] - wanted) / 2)) < 0.05
-
-    def _arrive(self, t: float, here: Pose2) -> None:
-        if self._job.name == "goal":
+        told = self._navigator.feedback
+        if told.status == Status.REACHED and self._job.name == "goal":
             self._end(t, NavStatus.REACHED, "goal reached")
             self._tell(t, "goal reached", "")
-        elif self._job.name == "explore":
-            self._is_there = False
-            self._done_with_target(t)
-            self._replan(t, here)
+        elif told.status == Status.ABORTED:
+            self._give_up(t, told.reason)
+        if self._job.name == "explore" and told.status in (Status.REACHED, Status.ABORTED):
+            self._explorer.blacklist_goal(t)
+            self._patrol.reached()
+            self._target = None
 
     def _give_up(self, t: float, reason: str) -> None:
-        self._progress_at = t
-        if self._job.allow_unknown:
-            self._try_again(t, reason)
-            return
-        self._tell(t, f"{self._job.name}: goal given up", reason, Event.WARNING)
-        if self._job.name == "goal":
+        """A person's goal is over; neither a mission nor the way home may be left out, so there a person has to decide."""
+        if self._job.allow_unknown and isinf(self._try_at):
+            self._tell(t, f"{self._job.name}: holding", reason, Event.WARNING)
+            self._asks.append(ModeRequest(mode=Mode.MODE_HOLD, source="planner"))
+            self._try_at = t + AGAIN
+        elif not self._job.allow_unknown:
+            self._tell(t, f"{self._job.name}: goal given up", reason, Event.WARNING)
             self._goal = None
-        else:
-            self._done_with_target(t)
-            self._planned_at = -np.inf
-            self._plan = PlannedPath(None, reason)
 
-    def _try_again(self, t: float, reason: str) -> None:
-        """Neither a mission nor the way home may be left out; after some tries a person has to decide."""
-        self._tries += 1
-        if self._tries < TRIES:
-            self._tell(t, f"{self._job.name}: trying again", reason, Event.WARNING)
-            return
-        self._tell(t, f"{self._job.name}: holding after {self._tries} tries", reason, Event.WARNING)
-        self._tries = 0
-        self._asks.append(ModeRequest(mode=Mode.MODE_HOLD, source="planner"))
+    def _tell_recoveries(self) -> None:
+        log = self._navigator.log
+        for at, text in log[self._told :]:
+            self._tell(at, text, self._job.name)
+        self._told = len(log)
 
-    def _in_map(self, point: Point) -> Point:
-        x, y, _ = compose(self._map_from_world, Pose2(point[0], point[1], 0.0))
-        return (x, y)
-
-    def _path(self, t: float) -> PosesInFrame:
+    def _path(self, t: float, directive: Directive) -> PosesInFrame:
         """The last pose has an orientation when a heading is wanted there; the others are the line's points."""
         message = PosesInFrame(timestamp=stamp(t), frame_id="world")
-        if self._plan.path is not None:
-            points = transform(self._world_from_map, self._plan.path).tolist()
-            message.poses.extend(Pose(position=Vector3(x=x, y=y)) for x, y in points)
-            if self._job.yaw is not None:
-                message.poses[-1].CopyFrom(planar_pose(points[-1][0], points[-1][1], self._job.yaw))
+        if directive.action == Action.FOLLOW:
+            message.poses.extend(line_of(self._world_from_map, directive.path))
+            if directive.heading is not None:
+                end = message.poses[-1].position
+                message.poses[-1].CopyFrom(planar_pose(end.x, end.y, directive.heading + self._world_from_map[2]))
         return message
 
-    def _nav_status(self, t: float, here: Pose2) -> NavStatus:
-        status = NavStatus(timestamp=stamp(t), job=self._job.name, reason=self._plan.reason, explored=self._explorer.explored)
-        status.state = self._state()
+    def _nav_status(self, t: float) -> NavStatus:
+        told = self._navigator.feedback
+        status = NavStatus(timestamp=stamp(t), job=self._job.name, reason=self._reason or told.reason, explored=self._explorer.explored)
+        status.state, status.recoveries = self._state(told.status), told.recoveries
         if self._target is not None:
             x, y, _ = compose(self._world_from_map, Pose2(self._target[0], self._target[1], 0.0))
             status.goal.x, status.goal.y = x, y
-        if self._plan.path is not None:
-            nearest = int(np.argmin(np.hypot(*(self._plan.path - np.array(here[:2])).T)))
-            status.distance_left = length(self._plan.path[nearest:])
+        if isfinite(told.distance_remaining):
+            status.distance_left = told.distance_remaining
+        if isfinite(told.time_remaining):
+            status.time_left = told.time_remaining
         return status
 
-    def _state(self) -> NavStatus.State:
+    def _state(self, status: Status) -> NavStatus.State:
         if self._ended_at is not None:
             return self._ending
-        if self._is_there:
-            return NavStatus.REACHED
         if self._target is None:
             return NavStatus.BLOCKED if self._shut_in else NavStatus.IDLE
-        return NavStatus.DRIVING if self._plan.path is not None else NavStatus.BLOCKED
+        if self._reason:
+            return NavStatus.BLOCKED
+        return STATES[status]
 
     def _tell(self, t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> None:
         self._events.append(Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source="planner"))

@@ -1,140 +1,166 @@
-"""Path, pose and the live scan -> velocity on ``cmd/planner``, 20 times a second; never nearer to anything than allowed."""
+"""Directive, path, pose and the live scan -> velocity on ``cmd/planner``, ten times a second; never nearer to anything than allowed."""
 
-from typing import Annotated
+from math import ceil
+from typing import Annotated, Literal
 
 import numpy as np
 from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.messages import DriveCommand, Event, LaserScan, PoseInFrame, PosesInFrame
-from uvf.maths.se2 import IDENTITY, Pose2, PoseHistory, inverse, transform
-from uvf.maths.se3 import Transform, from_above
-from uvf.models.keys import key
+from schemas.messages import DriveCommand, Event, LaserScan, NavDirective, NavReport, Odometry, PoseInFrame, PosesInFrame
+from services.planner.directives import directive_of, report_message
+from services.planner.scan_placing import ScanPlacer
+from uvf.maths.se2 import IDENTITY, Pose2
+from uvf.maths.se3 import Transform
+from uvf.models.keys import key, plain
 from uvf.models.params import Params
 from uvf.models.vehicle.file import GroundBody
-from uvf.planning.collision_check import safe_share
-from uvf.planning.pure_pursuit import PathTracker, SpeedLimits
-from uvf.runtime.contract.declaration import Reads, Writes, every, topic
+from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.costmap.inflation import Inflation
+from uvf.planning.local.controller import ControllerSettings, Drive, LocalController
+from uvf.planning.local.goal_checker import GoalTolerances
+from uvf.planning.local.mppi import Mppi, MppiSettings
+from uvf.planning.local.planner import Limits, LocalPlanner
+from uvf.planning.local.planners import make_local_planner
+from uvf.planning.local.window import WindowSettings
+from uvf.planning.navigation.directive import Action, Directive
+from uvf.planning.navigation.execution import Executor
+from uvf.runtime.contract.declaration import Reads, Writes, every, optional, topic
 from uvf.runtime.contract.service import Service
-from uvf.runtime.messages.convert import pose2_of, scan_rays, seconds, stamp, yaw_of
+from uvf.runtime.messages.convert import pose2_of, seconds, stamp, yaw_of
 from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
 Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
 
-HISTORY = 100  # poses kept, 2 s: a sweep may take one
+PERIOD = 0.1  # s
 SCAN_MAX_AGE = 0.6  # s; without sight nothing moves
-NEAR = 1.2  # m, points farther away cannot be reached before the next scan
-REACTION = 0.3  # s, from sight to the wheels
+SIZE = 8.0  # m, side of the window in which obstacles are remembered
+FARTHEST = 0.95 * SIZE / 2  # m
+HORIZON = 2.8  # s that the local planner looks ahead
+REVERSE = 0.5  # of the speed forwards
+LATERAL_ACCELERATION = 1.5  # m/s^2, beyond which wheels slide
 EVENTS_EVERY = 10.0  # s between two events about what is ahead
 
 
 class TrackerParams(Params, frozen=True):
     """Parameters of the path tracker."""
 
+    local_planner: Annotated[
+        Literal["mppi", "dwa", "trajectory_rollout", "regulated_pure_pursuit", "elastic_band", "vfh_plus"],
+        plain("What chooses the velocity along the path."),
+    ] = "mppi"
     speed: Annotated[Positive, key("m/s", "Speed on straight parts of the path.")] = 0.45
     turn_speed: Annotated[Positive, key("rad/s", "Turn rate on the spot.")] = 1.5
     deceleration: Annotated[Positive, key("m/s^2", "Deceleration that braking is planned with.")] = 0.5
     goal_tolerance: Annotated[Positive, key("m", "Distance at which the goal is reached.")] = 0.06
-    margin: Annotated[Positive, key("m", "Distance kept from obstacles beyond the vehicle's radius.")] = 0.02
-    patience: Annotated[Positive, key("s", "Time blocked before the vehicle backs off.")] = 1.5
-    back_off: Annotated[Positive, key("m/s", "Speed of backing off.")] = 0.1
+    margin: Annotated[Positive, key("m", "Distance kept from obstacles beyond the vehicle's outline.")] = 0.02
 
 
 class TrackerService(Service):
-    """Path tracker of one vehicle."""
+    """Path tracker of one vehicle: the local controller under the planner's directives."""
 
     name = "tracker"
-    hz = 20.0
+    hz = 1.0 / PERIOD
     given_up = "the vehicle stands where it would drive by itself"
+    fixed_params = frozenset(("local_planner",))
 
     class Inputs(Reads):
-        """Path, poses, and the lidar's scan."""
+        """Directive and path, poses, odometry, and the lidar's scan."""
 
+        directive: NavDirective = topic(topics.NAV_DIRECTIVE)
         path: PosesInFrame = topic(topics.PATH)
         pose: list[PoseInFrame] = every(topics.POSE)
+        odometry: Odometry | None = optional(topics.ODOMETRY)
         scan: LaserScan = topic(topics.SCAN)
 
     class Outputs(Writes):
-        """Velocity command and events."""
+        """Velocity command, report and events."""
 
         drive: DriveCommand | None = topic(topics.DRIVE.by("planner"))
+        report: NavReport | None = topic(topics.NAV_REPORT)
         events: list[Event] | None = topic(topics.EVENTS.by("tracker"))
 
     params: TrackerParams
 
-    def __init__(self, body: GroundBody, base_from_lidar: Transform, params: TrackerParams, sweeping: Sweeping = AT_ONCE) -> None:
+    def __init__(
+        self,
+        body: GroundBody,
+        footprint: RobotFootprint,
+        base_from_lidar: Transform,
+        params: TrackerParams,
+        sweeping: Sweeping = AT_ONCE,
+    ) -> None:
         self.params = params
-        self._body = body
-        self._base_from_lidar = base_from_lidar
-        self._sweeping = sweeping
-        self._tracker = PathTracker(self._pace)
-        self._history = PoseHistory(HISTORY)
+        self._body, self._footprint = body, footprint
+        self._placer = ScanPlacer(base_from_lidar, sweeping, FARTHEST)
         self._pose: Pose2 = IDENTITY
-        self._scan_time = -np.inf
-        self._seen: Floats = np.zeros((0, 2))
-        """(n, 2) m, world frame: the last scan's points near the vehicle."""
-        self._blocked_since: float | None = None
+        self._velocity = (0.0, 0.0)
+        self._made_for = params
+        self._executor = Executor(self._controller())
         self._told_at = -np.inf
 
     def step(self, t: float, now: Inputs) -> Outputs:
-        """One cycle at ``t`` [s, simulation]: the velocity along the path, slowed before obstacles that the scan shows."""
+        """One cycle at ``t`` [s, simulation]: what the directive says, slowed before obstacles that the scan shows."""
+        self._heed_params()
         for message in now.pose:
             self._pose = pose2_of(message.pose)
-            self._history.add(seconds(message.timestamp), self._pose)
-        self._look(now.scan)
-        self._tracker.pace = self._pace
-        if t - self._scan_time > SCAN_MAX_AGE:
+            self._placer.move(seconds(message.timestamp), self._pose)
+        if (seen := self._placer.place(now.scan)) is not None:
+            self._executor.controller.see(seen.t, seen.pose, seen.eye, seen.points, seen.ranges)
+        if t - self._placer.t > SCAN_MAX_AGE:
             return self.stale(t, ("scan",))
-        around = transform(inverse(self._pose), self._seen)
-        room = float(np.hypot(*around.T).min(initial=np.inf)) - self._keep
-        wanted = self._tracker.follow(self._pose, _points(now.path), _final_heading(now.path), room)
-        velocity, events = self._made_safe(t, wanted, around)
-        return self.Outputs(drive=DriveCommand(timestamp=stamp(t), linear=velocity[0], angular=velocity[1]), events=events)
+        if now.odometry is not None:
+            self._velocity = now.odometry.linear_velocity.x, now.odometry.angular_velocity.z
+        self._velocity = self._executor.step(t, self._pose, self._velocity, _directive(now.directive, now.path))
+        report = self._executor.report
+        return self.Outputs(
+            drive=DriveCommand(timestamp=stamp(t), linear=self._velocity[0], angular=self._velocity[1]),
+            report=report_message(t, report),
+            events=self._obstacle(t) if report.how in (Drive.STOPPED, Drive.NO_VALID_CONTROL) else [],
+        )
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
-        """Zero velocity at ``t`` [s, simulation], without path, pose or scan."""
+        """Zero velocity at ``t`` [s, simulation], without directive, path, pose or scan."""
+        self._executor.controller.halt()
         return self.Outputs(drive=DriveCommand(timestamp=stamp(t)))
 
-    @property
-    def _keep(self) -> float:
-        """m to keep from the vehicle's centre to everything."""
-        return self._body.radius + self.params.margin
-
-    @property
-    def _pace(self) -> SpeedLimits:
-        speeds = min(self.params.speed, self._body.max_linear), min(self.params.turn_speed, self._body.max_angular)
-        return SpeedLimits(*speeds, self.params.deceleration, self.params.goal_tolerance)
-
-    def _look(self, scan: LaserScan) -> None:
-        """Keeps the points of a new scan where they were seen, so that they stay while the vehicle moves on."""
-        taken_at = self._sweeping.end(seconds(scan.timestamp))
-        if taken_at <= self._scan_time:
+    def _heed_params(self) -> None:
+        """Takes other parameters over without forgetting what was seen."""
+        params = self.params
+        if params == self._made_for:
             return
-        ranges, rays = scan_rays(scan)
-        near, seen = (ranges > 0.0) & (ranges < NEAR), []
-        for at, beams in self._sweeping.parts(len(scan.ranges), seconds(scan.timestamp)):
-            if (world_from_base := self._history.at(at)) is None:
-                return
-            points = (rays[beams] * ranges[beams, None])[near[beams]]
-            seen.append(transform(world_from_base, from_above(self._base_from_lidar, points)))
-        self._scan_time, self._seen = taken_at, np.concatenate(seen)
+        self._made_for, controller = params, self._controller()
+        controller.layer, controller.moving = self._executor.controller.layer, self._executor.controller.moving
+        self._executor.controller = controller
 
-    def _made_safe(self, t: float, wanted: tuple[float, float], around: Floats) -> tuple[tuple[float, float], list[Event]]:
-        """The wanted velocity, slowed so that it ends before anything; backwards a little when that stays zero."""
-        brake = (REACTION, self.params.deceleration)
-        share = safe_share(around, wanted, self._keep, brake)
-        if share > 0.0:
-            self._blocked_since = None
-            return (share * wanted[0], share * wanted[1]), []
-        if self._blocked_since is None:
-            self._blocked_since = t
-            return (0.0, 0.0), self._obstacle(t)
-        back = (-self.params.back_off, 0.0)
-        if t - self._blocked_since > self.params.patience and safe_share(around, back, self._keep, brake) > 0.0:
-            return back, []
-        return (0.0, wanted[1]), []
+    def _controller(self) -> LocalController:
+        params, body = self.params, self._body
+        speed, turn_rate = min(params.speed, body.max_linear), min(params.turn_speed, body.max_angular)
+        limits = Limits(
+            -REVERSE * speed, speed, turn_rate, body.max_linear_acceleration, body.max_angular_acceleration, LATERAL_ACCELERATION
+        )
+        settings = ControllerSettings(
+            size=SIZE,
+            obstacle_range=FARTHEST,
+            inflation=Inflation(0.55, 4.0),
+            margin=params.margin,
+            stop_margin=params.margin / 2,
+            window=WindowSettings(2.0 * speed * HORIZON + 2.0),
+            period=PERIOD,
+            delay=PERIOD / 2,
+            reaction=2.0 * PERIOD,
+            braking=params.deceleration,
+            angular_braking=body.max_angular_acceleration,
+            goal=GoalTolerances(params.goal_tolerance, 0.05),
+        )
+        if params.local_planner == "mppi":
+            steps = ceil(HORIZON / PERIOD)
+            planner: LocalPlanner = Mppi(limits, self._footprint, MppiSettings(steps=steps, step=PERIOD, noise_memory=0.7))
+        else:
+            planner = make_local_planner(params.local_planner, limits, self._footprint)
+        return LocalController(self._footprint, limits, planner, settings)
 
     def _obstacle(self, t: float) -> list[Event]:
         """What to tell; nothing while the last time is not long ago, for one obstacle blocks and frees the way often."""
@@ -144,8 +170,13 @@ class TrackerService(Service):
         return [Event(timestamp=stamp(t), severity=Event.NOTICE, text="obstacle ahead", cause="lidar", source="planner")]
 
 
-def _points(path: PosesInFrame) -> Floats:
-    return np.array([(p.position.x, p.position.y) for p in path.poses]).reshape(-1, 2)
+def _directive(message: NavDirective, path: PosesInFrame) -> Directive:
+    """With the path where it is to be followed."""
+    said = directive_of(message)
+    if said.action != Action.FOLLOW:
+        return said
+    points = np.array([(p.position.x, p.position.y) for p in path.poses]).reshape(-1, 2)
+    return Directive(said.number, said.action, points, _final_heading(path), said.amount, said.clear_beyond)
 
 
 def _final_heading(path: PosesInFrame) -> float | None:

@@ -8,6 +8,7 @@ from tests.services.planner.plans import room
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.global_planner import MOST_CELLS, GlobalPlanner, PlannedBody, PlannedPath
+from uvf.planning.navigation.failures import Failure
 from uvf.planning.smoothing import length
 
 RADIUS = 0.15
@@ -63,7 +64,9 @@ def test_on_a_map_of_too_many_cells_nobody_drives_until_there_is_a_smaller_one()
     made.see(np.zeros((MOST_CELLS // 2000 + 1, 2000), dtype=np.int8), (0.05, (0.0, 0.0)))
     why = f"the map is too large to plan on: {MOST_CELLS + 2000} cells, {MOST_CELLS} at most"
     assert made.refusal((0.6, 0.6), (3.4, 0.6)) == why
-    assert made.plan((0.6, 0.6), (3.4, 0.6)) == made.plan((0.6, 0.6), (3.4, 0.6), allow_unknown=True) == PlannedPath(None, why)
+    assert (
+        made.plan((0.6, 0.6), (3.4, 0.6)) == made.plan((0.6, 0.6), (3.4, 0.6), allow_unknown=True) == PlannedPath(None, why, Failure.NO_MAP)
+    )
     assert made.ways((0.6, 0.6)) is None
     made.see(house(), (0.05, (0.0, 0.0)))
     assert made.refusal((0.6, 0.6), (3.4, 0.6)) == ""
@@ -77,7 +80,7 @@ def test_a_goal_too_far_for_a_message_of_the_path_is_refused():
     assert len(made.plan((5.0, 15.0), near).path) < LENGTHS["foxglove.PosesInFrame.poses"]
     why = "the goal is too far to plan: 10.5 km of way, 10.0 km at most"
     assert made.refusal((5.0, 15.0), far) == why
-    assert made.plan((5.0, 15.0), far) == PlannedPath(None, why)
+    assert made.plan((5.0, 15.0), far) == PlannedPath(None, why, Failure.GOAL_TOO_FAR)
 
 
 def test_a_possible_goal_is_not_refused():

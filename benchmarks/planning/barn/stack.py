@@ -29,7 +29,7 @@ SIZE = 24.0  # m, of the window that paths are planned over
 REPLAN = 0.2  # s
 PATIENCE, OSCILLATION_TIME = 6.0, 40.0  # s: who makes way for what moves stands and goes back now and then
 STACK_LIMITS = Limits(
-    min_speed=-0.5, max_speed=1.4, max_turn_rate=2.0, acceleration=2.5, angular_acceleration=6.0, lateral_acceleration=2.0
+    min_speed=-0.5, max_speed=1.4, max_turn_rate=2.0, acceleration=2.5, angular_acceleration=6.0, lateral_acceleration=1.5
 )
 EVASION_LIMITS = Limits(
     min_speed=-2.0, max_speed=2.0, max_turn_rate=2.0, acceleration=4.0, angular_acceleration=8.0, lateral_acceleration=2.0

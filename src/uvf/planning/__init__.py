@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from uvf.planning.exploration import Explorer as Explorer
     from uvf.planning.global_planner import GlobalPlanner as GlobalPlanner
     from uvf.planning.global_planner import PlannedBody as PlannedBody
-    from uvf.planning.pure_pursuit import PathTracker as PathTracker
     from uvf.planning.search.grid_search import GridSearch as GridSearch
 
 OFFERED = {
@@ -25,7 +24,6 @@ OFFERED = {
     "RobotFootprint": "uvf.planning.costmap.footprint:RobotFootprint",
     "GlobalPlanner": "uvf.planning.global_planner:GlobalPlanner",
     "PlannedBody": "uvf.planning.global_planner:PlannedBody",
-    "PathTracker": "uvf.planning.pure_pursuit:PathTracker",
     "Explorer": "uvf.planning.exploration:Explorer",
 }
 __all__ = list(OFFERED)

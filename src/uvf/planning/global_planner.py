@@ -10,6 +10,7 @@ from uvf.planning.costmap.costmap import Costmap, Frame, make_costmap
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import INSCRIBED, Inflation, cost_factors
 from uvf.planning.costmap.own_ground import LEAVING, ground_below, leads_away, standing_radius, widened, with_own_ground, with_way_out
+from uvf.planning.navigation.failures import Failure
 from uvf.planning.search.grid_search import Cell, CostToGo, GridSearch
 from uvf.planning.smoothing import SPACING, length, smoothed
 
@@ -40,6 +41,7 @@ class PlannedPath:
 
     path: Floats | None
     reason: str = ""
+    failure: Failure = Failure.NONE
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,11 @@ class GlobalPlanner:
         self.costs: Costmap | None = None
         self.missing = "there is no map yet"
         """Why there are no costs, and no ways, while there are none."""
+
+    @property
+    def body(self) -> PlannedBody:
+        """What paths are planned for."""
+        return self._body
 
     def fit(self, body: PlannedBody) -> bool:
         """Plans for another body from now on; whether that changes anything."""
@@ -158,26 +165,34 @@ class GlobalPlanner:
         """
         known = self.costs
         if known is None:
-            return PlannedPath(None, self.missing)
+            return PlannedPath(None, self.missing, Failure.NO_MAP)
         if not _is_place(goal):
-            return PlannedPath(None, NO_PLACE)
+            return PlannedPath(None, NO_PLACE, Failure.GOAL_OUTSIDE_MAP)
         here = known.cell(*start)
         if not known.holds(here):
-            return PlannedPath(None, OUTSIDE)
+            return PlannedPath(None, OUTSIDE, Failure.START_OUTSIDE_MAP)
         there = known.cell(*goal)
         if not known.holds(there) and not allow_unknown:
-            return PlannedPath(None, "the goal lies outside the map")
+            return PlannedPath(None, "the goal lies outside the map", Failure.GOAL_OUTSIDE_MAP)
         rows, columns = known.values.shape
         there = (min(max(there[0], 0), rows - 1), min(max(there[1], 0), columns - 1))
         found = GridSearch(self._leaving(known, here).values, self._factors(allow_unknown)).astar(here, there)
         if found is None:
-            return PlannedPath(None, self.shut_in(start) or NO_WAY)
+            return self._no_way(known, start, there)
         points = known.points(found.cells)
         points[0] = start
         if known.holds(known.cell(*goal)):
             points = np.vstack((points[:-1], goal)) if len(points) > 1 else np.array((start, goal))
         too_far = _too_far(points)
-        return PlannedPath(None, too_far) if too_far else PlannedPath(smoothed(points, known, self._needed))
+        return PlannedPath(None, too_far, Failure.GOAL_TOO_FAR) if too_far else PlannedPath(smoothed(points, known, self._needed))
+
+    def _no_way(self, known: Costmap, start: Point, goal: Cell) -> PlannedPath:
+        """Why none was found: by where the vehicle stands, by the goal, or by what lies between."""
+        if shut_in := self.shut_in(start):
+            return PlannedPath(None, shut_in, Failure.START_OCCUPIED)
+        if INSCRIBED <= known.values[goal] and not known.unknown[goal]:
+            return PlannedPath(None, Failure.GOAL_OCCUPIED.value, Failure.GOAL_OCCUPIED)
+        return PlannedPath(None, NO_WAY, Failure.NO_VALID_PATH)
 
     def _leaving(self, costs: Costmap, start: Cell) -> Costmap:
         """The vehicle may leave a place that is too near to an obstacle, and drive off over unseen ground that it covers itself."""

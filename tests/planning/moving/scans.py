@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uvf.planning.moving.tracks import MovingObjects
+from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
+from uvf.planning.moving.tracks import MovingObjects, SeenFrom
 
 DT = 0.05  # s from scan to scan
 
@@ -51,13 +52,16 @@ def follow(discs_at, seconds, *, lidar=None, walls=(), pose_at=lambda t: (0.0, 0
     """Yields (t, tracker, mask, ranges, points) after every scan. discs_at, pose_at: functions of t [s]."""
     lidar = lidar or Lidar()
     rng = np.random.default_rng(seed)
-    tracker = MovingObjects()
+    tracker, layer = MovingObjects(), ObstacleLayer(24.0, 0.05)
     for k in range(round(seconds / DT)):
         t = k * DT
         pose = np.array(pose_at(t))
         ranges = lidar.ranges(pose, discs_at(t), walls, rng)
         points = lidar.points(pose, ranges)
-        mask = tracker.observe(t, (pose[0], pose[1]), points, ranges)
+        eye = pose[0], pose[1]
+        layer.recentre(eye)
+        mask = tracker.observe(t, points, ranges, SeenFrom(eye, layer.lately_free(t, points)))
+        layer.observe(BeamObservation(t, t, eye, points, (ranges > 0.0) & ~mask))
         yield t, tracker, mask, ranges, points
 
 

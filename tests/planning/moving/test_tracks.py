@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 
 from tests.planning.moving.scans import DT, Lidar, follow, nearest
-from uvf.planning.moving.tracks import MovingObjects
+from uvf.planning.moving.tracks import MovingObjects, SeenFrom
 
 ROOM = [(0.0, 8.0), (np.pi / 2, 6.0), (np.pi, 7.0), (-np.pi / 2, 6.0)]
 """Walls of a room round the origin: angle of the outward normal, distance."""
+
+
+def seen_from(beams):
+    return SeenFrom((0.0, 0.0), np.zeros(beams, dtype=np.bool_))
 
 
 def straight(x, y, vx, vy, radius=0.5):
@@ -153,7 +157,7 @@ def test_scans_without_any_return_and_without_beams():
     *_, last = follow(lambda t: np.zeros((0, 3)), 0.5)
     assert not len(last[1].moving()) and not last[2].any()
     empty = MovingObjects()
-    assert empty.observe(0.0, (0.0, 0.0), np.zeros((0, 2)), np.zeros(0)).shape == (0,)
+    assert empty.observe(0.0, np.zeros((0, 2)), np.zeros(0), seen_from(0)).shape == (0,)
     assert empty.moving().shape == (0, 5)
 
 
@@ -161,6 +165,6 @@ def test_a_scan_that_is_no_newer_changes_nothing():
     discs = straight(3.0, -1.0, 0.0, 1.0)
     *_, (t, tracker, _, ranges, points) = follow(discs, 1.0, walls=ROOM)
     before = tracker.moving()
-    assert not tracker.observe(t, (0.0, 0.0), points, ranges).any()
+    assert not tracker.observe(t, points, ranges, seen_from(len(ranges))).any()
     assert np.array_equal(tracker.moving(), before)
-    assert tracker.observe(t + DT, (0.0, 0.0), points, ranges).any()
+    assert tracker.observe(t + DT, points, ranges, seen_from(len(ranges))).any()

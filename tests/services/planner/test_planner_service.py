@@ -8,26 +8,43 @@ from schemas.messages import (
     Fence,
     FenceZone,
     GoalRequest,
+    LaserScan,
     Mission,
     MissionItem,
     MissionProgress,
     Mode,
+    NavDirective,
+    NavReport,
     NavStatus,
     PoseInFrame,
+    PreviewRequest,
     Vector3,
     VehicleStatus,
 )
-from services.planner.planner_service import PlannerParams, PlannerService
+from services.planner.params import PlannerParams
+from services.planner.planner_service import PlannedVehicle, PlannerService
+from services.planner.scan_placing import ScanPlacer
+from services.planner.tracker_service import FARTHEST
 from tests.runtime.stepping import recall, stale, stepped
 from tests.services.live_params import all_settable_are_read
 from tests.services.planner.plans import room
+from uvf.maths.se3 import Transform
 from uvf.planning import global_planner
+from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.search.grid_search import GridSearch
-from uvf.runtime.messages.convert import occupancy_grid, planar_pose
+from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
+from uvf.sensors.sweeping import AT_ONCE
 
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
+NOTHING = dict.fromkeys(("scan", "report", "mission", "progress", "bounds", "rally"))
 START = (10.0, 20.0, np.pi / 2)
 """The map lies here in the world, turned: map x is world y."""
+
+
+def planner(explores=False, offset=0.0):
+    """Of a round vehicle of 0.1 m with a lidar ``offset`` [m] ahead of its centre."""
+    placer = ScanPlacer(Transform(np.array((1.0, 0.0, 0.0, 0.0)), np.array((offset, 0.0, 0.1))), AT_ONCE, FARTHEST)
+    return PlannerService(START, PlannedVehicle(RobotFootprint.circle(0.1), placer, 0.45, explores), PlannerParams())
 
 
 CANCEL = CancelRequest(source="test")
@@ -37,7 +54,7 @@ class Bench:
     """Steps a planner at 4 Hz in a room of 4 x 3 m; the vehicle stands at ``here`` [m, map] unless it is moved."""
 
     def __init__(self, explores=False):
-        self.service = PlannerService(START, 0.1, explores, PlannerParams())
+        self.service = planner(explores)
         self.t = 0.0
         self.here = (1.0, 1.0)
         self.yaw = START[2]  # rad, world
@@ -46,12 +63,13 @@ class Bench:
         self.events = []
         self.asked = []
 
-    def step(self, n=1, status=READY, mission=None, progress=None, goal=(), cancel=(), bounds=None, rally=None):
+    def step(self, n=1, status=READY, goal=(), cancel=(), preview=(), **heard):
         for _ in range(n):
             self.t += 0.25
-            pose = PoseInFrame(pose=planar_pose(*world(*self.here), self.yaw))
-            told = {"status": status, "mission": mission, "progress": progress, "bounds": bounds, "rally": rally}
-            self.said = stepped(self.service, self.t, pose=pose, map=self.grid, goal=list(goal), cancel=list(cancel), **told)
+            pose = PoseInFrame(timestamp=stamp(self.t), pose=planar_pose(*world(*self.here), self.yaw))
+            asks = {"goal": list(goal), "cancel": list(cancel), "preview": list(preview)}
+            told = NOTHING | {"status": status, "pose": [pose], "map": self.grid} | asks | heard
+            self.said = stepped(self.service, self.t, **told)
             self.events += [e.text for e in self.said["events"]]
             self.asked += self.said["set_mode"]
         return self
@@ -68,6 +86,11 @@ def world(x, y):
 def asked(x, y, yaw=float("nan")):
     position = world(x, y)
     return GoalRequest(position=Vector3(x=position[0], y=position[1]), yaw=yaw, source="test")
+
+
+def preview(x, y):
+    position = world(x, y)
+    return PreviewRequest(position=Vector3(x=position[0], y=position[1]), source="test")
 
 
 @pytest.mark.parametrize("explores", [False, True])
@@ -215,22 +238,87 @@ def test_a_wanted_heading_is_part_of_the_goal():
     bench = Bench().step(goal=[asked(2.0, 2.0, yaw=0.0)]).step()
     assert bench.said["path"].poses[-1].HasField("orientation")
     bench.here = (2.0, 2.0)
-    assert bench.step().state == NavStatus.DRIVING
+    assert bench.step(2).state == NavStatus.DRIVING
 
 
-def test_a_goal_is_given_up_when_the_vehicle_gets_nowhere():
-    bench = Bench().step(goal=[asked(3.0, 2.0)])
-    bench.step(int(4 * PlannerParams().patience) + 3)
+RECOVERIES = ["forgetting obstacles farther", "turning round", "forgetting all obstacles", "backing up", "waiting"]
+
+
+def test_a_goal_is_given_up_when_the_vehicle_gets_nowhere_whatever_is_tried():
+    bench = Bench().step(goal=[asked(3.0, 2.0)]).step(4 * 60)
+    told = [event for event in bench.events if "does not move" in event]
+    assert [event.startswith(recovery) for event, recovery in zip(told, RECOVERIES, strict=True)] == [True] * 5
     assert "goal: goal given up" in bench.events
     assert bench.said["nav_status"].job == "idle"
 
 
 def test_trembling_about_the_heading_where_angles_wrap_is_not_getting_anywhere():
     bench = Bench().step(goal=[asked(3.0, 2.0)])
-    for i in range(int(4 * PlannerParams().patience) + 3):
+    for i in range(4 * 60):
         bench.yaw = START[2] + np.pi + (0.01 if i % 2 else -0.01)
         bench.step()
     assert "goal: goal given up" in bench.events
+
+
+def test_what_the_tracker_is_to_do_goes_with_the_path():
+    bench = Bench().step(goal=[asked(3.0, 2.0)])
+    following = bench.said["directive"]
+    assert (following.action, len(bench.said["path"].poses) > 10) == (NavDirective.FOLLOW, True)
+    assert bench.step().said["directive"].number == following.number
+    while bench.state != NavStatus.RECOVERING:
+        bench.step()
+    resetting = bench.said["directive"]
+    assert (resetting.action, resetting.clear_beyond) == (NavDirective.STOP, 3.0)
+    assert resetting.number > following.number
+    assert (bench.state, len(bench.said["path"].poses)) == (NavStatus.RECOVERING, 0)
+    assert bench.said["nav_status"].recoveries == 1
+
+
+def test_a_recovery_ends_when_the_tracker_says_so():
+    bench = Bench().step(goal=[asked(3.0, 2.0)])
+    while bench.said["directive"].action != NavDirective.SPIN:
+        bench.step()
+    spin = bench.said["directive"]
+    bench.step(report=NavReport(number=spin.number - 1, done=True))
+    assert bench.said["directive"].number == spin.number
+    bench.step(report=NavReport(number=spin.number, done=True))
+    assert bench.said["directive"].action == NavDirective.FOLLOW
+
+
+def wall_seen(bench, x):
+    """A scan of a vehicle that looks along the map's x, with a wall across its way ``x`` [m] ahead, as wide as the room but for a gap."""
+    angles = np.radians(np.arange(-60.0, 61.0))
+    across = x * np.tan(angles)
+    ranges = np.where((across > -0.95) & (across < 1.0), x / np.cos(angles), 0.0)
+    return LaserScan(timestamp=stamp(bench.t), start_angle=angles[0], end_angle=angles[-1], ranges=ranges.tolist())
+
+
+def test_what_the_lidar_sees_and_the_map_does_not_is_gone_round():
+    bench = Bench().step(goal=[asked(3.0, 1.0)]).step(2)
+    highest = max(pose.position.x for pose in bench.said["path"].poses)
+    bench.step(scan=wall_seen(bench, 1.0)).step(4)
+    path = np.array([(pose.position.y - START[1], START[0] - pose.position.x) for pose in bench.said["path"].poses])
+    assert highest == pytest.approx(START[0] - 1.0, abs=0.1)
+    assert path[np.abs(path[:, 0] - 2.0) < 0.3, 1].min() > 2.0
+
+
+def test_a_preview_tells_the_way_without_driving_it():
+    bench = Bench().step()
+    bench.step(preview=[preview(3.0, 2.0), preview(0.07, 1.0)])
+    good, bad = bench.said["preview"]
+    assert (good.accepted, bench.said["nav_status"].job) == (True, "idle")
+    assert good.length == pytest.approx(np.hypot(2.0, 1.0), rel=0.1)
+    assert good.duration == pytest.approx(good.length / 0.45)
+    assert good.clearance == pytest.approx(0.9, abs=0.15)
+    assert (good.poses[-1].position.x, good.poses[-1].position.y) == pytest.approx(world(3.0, 2.0))
+    assert (bad.accepted, bad.reason, len(bad.poses)) == (False, "the goal lies in an obstacle", 0)
+
+
+def test_a_flood_of_previews_is_answered_in_part():
+    bench = Bench().step().step(preview=[preview(2.0, 2.0)] * 50)
+    answers = bench.said["preview"]
+    assert [answer.accepted for answer in answers] == [True] * 4 + [False] * 46
+    assert "ask again" in answers[-1].reason
 
 
 def test_standing_while_a_person_drives_is_not_getting_nowhere():
@@ -248,26 +336,28 @@ def test_the_mission_is_driven_to_its_current_item():
     assert bench.said["path"].poses[-1].position.x == pytest.approx(x)
 
 
-def test_a_mission_item_that_cannot_be_reached_ends_in_hold_after_three_tries():
+def test_a_mission_item_that_cannot_be_reached_ends_in_hold_and_is_tried_again_by_and_by():
     x, y = world(0.0, 1.0)  # in the wall
     mission = Mission(id=9, items=[MissionItem(position=Vector3(x=x, y=y))])
     progress = MissionProgress(state=MissionProgress.ACTIVE, mission_id=9)
-    a_try = int(4 * PlannerParams().patience) + 2
-    bench = Bench().step(2 * a_try, mission=mission, progress=progress)
+    bench = Bench().step(4, mission=mission, progress=progress)
     assert bench.asked == []
-    bench.step(a_try, mission=mission, progress=progress)
+    bench.step(4 * 35, mission=mission, progress=progress)
     assert [(r.mode, r.source) for r in bench.asked] == [(Mode.MODE_HOLD, "planner")]
-    assert bench.events == ["job: mission", "mission: trying again", "mission: trying again", "mission: holding after 3 tries"]
+    assert bench.events[-1] == "mission: holding"
+    assert bench.state == NavStatus.BLOCKED
+    bench.step(4 * 45, mission=mission, progress=progress)
+    assert len(bench.asked) == 2
 
 
-def test_after_hold_the_item_is_tried_three_times_again():
-    x, y = world(0.0, 1.0)
+def test_a_vehicle_that_is_pushed_away_from_its_mission_item_drives_back():
+    x, y = world(1.0, 1.0)
     mission = Mission(id=9, items=[MissionItem(position=Vector3(x=x, y=y))])
-    active, paused = (MissionProgress(state=state, mission_id=9) for state in (MissionProgress.ACTIVE, MissionProgress.PAUSED))
-    a_try = int(4 * PlannerParams().patience) + 2
-    bench = Bench().step(2 * a_try, mission=mission, progress=active).step(2, mission=mission, progress=paused)
-    bench.step(2 * a_try, mission=mission, progress=active)
-    assert bench.asked == []
+    progress = MissionProgress(state=MissionProgress.ACTIVE, mission_id=9)
+    bench = Bench().step(4, mission=mission, progress=progress)
+    assert bench.state == NavStatus.REACHED
+    bench.here = (2.0, 1.0)
+    assert bench.step(2, mission=mission, progress=progress).state == NavStatus.DRIVING
 
 
 def test_return_leads_to_the_start():
@@ -339,7 +429,7 @@ def test_a_comfort_below_the_radius_does_not_spoil_the_costs():
     bench = Bench().step(goal=[asked(3.0, 2.0)]).step()
     bench.service.params = PlannerParams(inflation_radius=0.13)
     assert bench.step(2).state == NavStatus.DRIVING
-    assert np.isfinite(bench.service._navigator.costs.distance).all()
+    assert np.isfinite(bench.service._planner.costs.distance).all()
 
 
 @pytest.mark.parametrize(("here", "why"), [((0.5, 1.0), "on ground that is not mapped"), ((-3.0, 1.0), "outside its map")])
@@ -362,6 +452,6 @@ def test_where_nothing_can_be_planned_nothing_counts_as_explored_and_it_is_said_
 def test_a_lidar_ahead_of_the_vehicle_shows_enough_to_begin_with():
     bench = Bench(explores=True)
     cells = room(4.0, 3.0)
-    bench.service = PlannerService(START, 0.1, True, PlannerParams(), sensor_offset=0.2)
+    bench.service = planner(True, 0.2)
     bench.grid = occupancy_grid(cells[:, 24:], 0.05, 1.2, 0.0, "v/map", 0.0)
-    assert bench.step().state == NavStatus.DRIVING
+    assert bench.step(2).state == NavStatus.DRIVING

@@ -1,72 +1,133 @@
-"""The tracker step by step: driving, slowing down before what it sees, backing off, standing without inputs."""
+"""The tracker step by step: driving, stopping before what it sees, recovering as told, standing without inputs."""
 
 import numpy as np
 import pytest
 
-from schemas.messages import (
-    LaserScan,
-    PoseInFrame,
-    PosesInFrame,
-)
+from schemas.messages import LaserScan, NavDirective, NavReport, Pose, PoseInFrame, PosesInFrame, Vector3
+from services.planner.scan_placing import ScanPlacer
 from services.planner.tracker_service import TrackerParams, TrackerService
 from tests.runtime.stepping import stale, stepped
 from tests.services.autopilot.ground.test_service import BODY
 from tests.services.live_params import all_settable_are_read
 from uvf.maths.rotations import from_euler
+from uvf.maths.se2 import Pose2, transform
 from uvf.maths.se3 import IDENTITY, Transform
-from uvf.runtime.messages.convert import planar_pose, stamp
+from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.runtime.messages.convert import planar_pose, pose2_of, seconds, stamp
 from uvf.sensors.sweeping import AT_ONCE, SPACING, Sweeping
 
 
-def scan(t, ahead):
-    """A wall across the way, ``ahead`` [m] of the lidar; nothing elsewhere."""
+def scan(t, ahead, yaw=0.0, around=0.0):
+    """A wall to the east, ``ahead`` [m] of a lidar that looks along ``yaw`` [rad]; elsewhere something ``around`` it [m], 0 = nothing."""
     angles = np.radians(np.arange(360.0))
-    ranges = np.where(np.cos(angles) > 0.5, ahead / np.maximum(np.cos(angles), 0.5), 0.0)
+    towards = np.cos(angles + yaw)
+    ranges = np.where(towards > 0.5, ahead / np.maximum(towards, 0.5), around)
+    if around > 0.0:
+        ranges = np.full(360, around)
     return LaserScan(timestamp=stamp(t), start_angle=0.0, end_angle=angles[-1], ranges=ranges.tolist())
 
 
-class TrackerBench:
-    """A vehicle at the world's origin that looks east; the wall stays ``ahead``, the path leads 3 m east."""
+FOOTPRINT = RobotFootprint.circle(BODY.radius)
+EAST = PosesInFrame(poses=[Pose(position=Vector3(x=0.1 * i)) for i in range(31)])
+FOLLOW = NavDirective(number=1, action=NavDirective.FOLLOW)
 
-    def __init__(self, base_from_lidar=IDENTITY):
-        self.service = TrackerService(BODY, base_from_lidar, TrackerParams())
+
+class TrackerBench:
+    """A vehicle that starts at the world's origin and looks east; a wall ``ahead`` [m] of it there, the path leads 3 m east."""
+
+    def __init__(self, base_from_lidar=IDENTITY, **params):
+        self.service = TrackerService(BODY, FOOTPRINT, base_from_lidar, TrackerParams(**params))
         self.t = 0.0
+        self.pose = np.zeros(3)
         self.commands = []
         self.events = []
+        self.report = None
 
-    def step(self, n, ahead, blind=False):
-        path = PosesInFrame(poses=[planar_pose(0.1 * i, 0.0, 0.0) for i in range(31)])
+    def step(self, n, ahead, blind=False, directive=FOLLOW, moves=False, around=0.0):
         for _ in range(n):
-            self.t += 0.05
-            poses = [PoseInFrame(timestamp=stamp(self.t - s), pose=planar_pose(0.0, 0.0, 0.0)) for s in (0.04, 0.02)]
+            self.t += 0.1
+            x, y, yaw = self.pose
+            poses = [PoseInFrame(timestamp=stamp(self.t - s), pose=planar_pose(x, y, yaw)) for s in (0.08, 0.04, 0.02)]
             seen_at = 0.0 if blind else self.t - 0.03
-            out = stepped(self.service, self.t, path=path, pose=poses, scan=scan(seen_at, ahead))
+            out = stepped(
+                self.service, self.t, directive=directive, path=EAST, pose=poses, odometry=None, scan=scan(seen_at, ahead - x, yaw, around)
+            )
             self.commands.append((out["drive"].linear, out["drive"].angular))
             self.events += [e.text for e in out.get("events", [])]
+            self.report = out.get("report")
+            if moves:
+                v, w = self.commands[-1]
+                self.pose += (0.1 * v * np.cos(yaw), 0.1 * v * np.sin(yaw), 0.1 * w)
         return self
+
+    @property
+    def speed(self):
+        return self.commands[-1][0]
 
 
 def test_drives_where_the_way_is_free():
-    assert TrackerBench().step(10, ahead=3.0).commands[-1][0] == pytest.approx(TrackerParams().speed)
+    assert TrackerBench().step(10, ahead=4.5).speed > 0.9 * TrackerParams().speed
 
 
-def test_slows_down_and_stops_before_what_it_sees():
-    free, near, close = (TrackerBench().step(3, ahead).commands[-1][0] for ahead in (3.0, 0.4, 0.18))
-    assert free > near > 0.0
-    assert close == 0.0
+def test_comes_to_the_end_of_its_path_and_stands_there():
+    bench = TrackerBench().step(110, ahead=5.0, moves=True)
+    assert bench.pose[:2] == pytest.approx((3.0, 0.0), abs=0.1)
+    assert (bench.commands[-1], bench.report.drive) == ((0.0, 0.0), NavReport.ARRIVED)
+
+
+def test_stops_before_a_wall_on_its_path():
+    bench = TrackerBench().step(80, ahead=1.5, moves=True)
+    assert 0.7 < bench.pose[0] < 1.5 - BODY.radius
+    before = bench.pose[0]
+    assert bench.step(40, ahead=1.5, moves=True).pose[0] == pytest.approx(before, abs=0.15)
+
+
+def test_never_comes_nearer_than_its_margin():
+    bench = TrackerBench().step(80, ahead=0.6, moves=True)
+    assert bench.pose[0] + BODY.radius <= 0.6
+
+
+@pytest.mark.parametrize("planner", ["dwa", "trajectory_rollout", "regulated_pure_pursuit", "elastic_band", "vfh_plus"])
+def test_every_local_planner_drives_and_stops(planner):
+    bench = TrackerBench(local_planner=planner).step(150, ahead=5.0, moves=True)
+    assert bench.pose[:2] == pytest.approx((3.0, 0.0), abs=0.1)
+    assert bench.commands[-1] == (0.0, 0.0)
+
+
+def test_turns_on_the_spot_as_told_and_reports_it_done():
+    spin = NavDirective(number=7, action=NavDirective.SPIN, amount=2.0)
+    bench = TrackerBench().step(1, ahead=3.0)
+    before = bench.pose[2]
+    bench.step(40, ahead=3.0, directive=spin, moves=True)
+    assert bench.pose[2] - before == pytest.approx(2.0, abs=0.2)
+    assert (bench.report.number, bench.report.done) == (7, True)
+
+
+def test_backs_up_as_told_but_not_into_what_stands_behind():
+    back = NavDirective(number=7, action=NavDirective.BACK_UP, amount=0.3)
+    bench = TrackerBench().step(40, ahead=3.0, directive=back, moves=True)
+    assert bench.pose[0] == pytest.approx(-0.3, abs=0.05)
+    assert bench.report.done
+    bench = TrackerBench()
+    bench.pose[2] = np.pi
+    bench.step(40, ahead=0.25, directive=back, moves=True)
+    assert bench.report.impossible
+    assert bench.pose[0] + BODY.radius < 0.25
+
+
+def test_an_unknown_action_means_to_stop():
+    bench = TrackerBench().step(10, ahead=3.0)
+    assert bench.step(3, ahead=3.0, directive=NavDirective(number=2, action=99)).commands[-1] == (0.0, 0.0)
 
 
 def test_what_a_scanner_sees_that_hangs_upside_down_is_on_the_side_where_it_is():
-    """Its right is the vehicle's left: an obstacle in front and on the left slows a curve to the left, not one to the right."""
-    beside = LaserScan(timestamp=stamp(1.0), start_angle=-1.0, end_angle=-0.8, ranges=[0.2] * 9)
+    """Its right is the vehicle's left: what it sees there is kept in mind as an obstacle on the left."""
+    beside = LaserScan(timestamp=stamp(1.0), start_angle=-1.0, end_angle=-0.8, ranges=[0.5] * 9)
     poses = [PoseInFrame(timestamp=stamp(1.0), pose=planar_pose(0.0, 0.0, 0.0))]
-    hanging = Transform(from_euler(np.pi, 0.0, 0.0), np.zeros(3))
-
-    def speed(side):
-        path = PosesInFrame(poses=[planar_pose(0.1 * i, side * 0.1 * i, 0.0) for i in range(11)])
-        return stepped(TrackerService(BODY, hanging, TrackerParams()), 1.0, path=path, pose=poses, scan=beside)["drive"].linear
-
-    assert speed(-1.0) > 1.2 * speed(1.0)
+    service = TrackerService(BODY, FOOTPRINT, Transform(from_euler(np.pi, 0.0, 0.0), np.zeros(3)), TrackerParams())
+    stepped(service, 1.0, directive=FOLLOW, path=EAST, pose=poses, odometry=None, scan=beside)
+    seen = service._executor.controller.layer.lethal_near((0.0, 0.0), 1.0)
+    assert len(seen) >= 2 and (seen[:, 1] > 0.3).all()
 
 
 TURNING = 1.5  # rad/s
@@ -86,10 +147,15 @@ def poses_until(end):
 
 
 def post_seen(sweeping, clockwise, end=1.02):
-    """Bearings [rad] in the world at which it is taken to stand."""
-    service = TrackerService(BODY, IDENTITY, TrackerParams(), sweeping)
-    stepped(service, 1.02, path=PosesInFrame(), pose=poses_until(end), scan=swept_post(clockwise))
-    return np.arctan2(service._seen[:, 1], service._seen[:, 0])
+    """Bearings [rad] in the world at which its beams end, near as they are."""
+    placer = ScanPlacer(IDENTITY, sweeping, 4.0)
+    for message in poses_until(end):
+        placer.move(seconds(message.timestamp), pose2_of(message.pose))
+    seen = placer.place(swept_post(clockwise))
+    if seen is None:
+        return np.zeros(0)
+    points = transform(seen.pose, seen.points[seen.ranges > 0.0])
+    return np.arctan2(points[:, 1], points[:, 0])
 
 
 @pytest.mark.parametrize("clockwise", [False, True])
@@ -106,31 +172,39 @@ def test_a_sweep_counts_when_the_pose_at_its_last_beam_is_known():
 
 def test_a_slow_scan_is_as_old_as_its_last_beam():
     wall = scan(1.0, ahead=3.0)
-    path = PosesInFrame(poses=[planar_pose(0.1 * i, 0.0, 0.0) for i in range(31)])
-    service = TrackerService(BODY, IDENTITY, TrackerParams(), Sweeping(0.5))
+    service = TrackerService(BODY, FOOTPRINT, IDENTITY, TrackerParams(), Sweeping(0.5))
+    told = {"directive": FOLLOW, "path": EAST, "odometry": None, "scan": wall}
     poses = [PoseInFrame(timestamp=stamp(0.02 * k), pose=planar_pose(0.0, 0.0, 0.0)) for k in range(100)]
-    assert stepped(service, 2.0, path=path, pose=poses, scan=wall)["drive"].linear > 0.1
-    assert stepped(service, 2.2, path=path, pose=[], scan=wall)["drive"].linear == 0.0
+    assert stepped(service, 2.0, pose=poses, **told)["drive"].linear > 0.05
+    assert stepped(service, 2.2, pose=[], **told)["drive"].linear == 0.0
 
 
-def test_backs_off_when_it_stays_blocked():
-    bench = TrackerBench().step(70, ahead=0.18)
-    assert bench.commands[5][0] == 0.0
-    assert bench.commands[-1][0] == pytest.approx(-TrackerParams().back_off)
-    assert bench.events == ["obstacle ahead"]
+def test_of_more_beams_than_are_needed_the_nearest_of_neighbours_count():
+    ranges = np.full(20_000, 3.0)
+    ranges[777], ranges[5000:5100] = 0.7, 0.0
+    placer = ScanPlacer(IDENTITY, AT_ONCE, 4.0)
+    placer.move(0.0, Pose2(0.0, 0.0, 0.0))
+    placer.move(1.0, Pose2(0.0, 0.0, 0.0))
+    seen = placer.place(LaserScan(timestamp=stamp(1.0), start_angle=-3.0, end_angle=3.0, ranges=ranges.tolist()))
+    assert len(seen.ranges) <= 1440
+    assert ((seen.ranges > 0.0) & (seen.ranges < 1.0)).sum() == 1
+    angle = -3.0 + 6.0 * 777 / 19_999
+    assert seen.points[np.argmin(np.where(seen.ranges > 0.0, seen.ranges, 9.0))] == pytest.approx(
+        (0.7 * np.cos(angle), 0.7 * np.sin(angle)), abs=1e-3
+    )
 
 
 def test_an_obstacle_that_comes_and_goes_is_told_every_ten_seconds_at_most():
     bench = TrackerBench()
     for _ in range(50):
-        bench.step(6, ahead=0.18).step(4, ahead=3.0)
+        bench.step(3, ahead=4.0, around=0.155).step(2, ahead=4.0)
     assert bench.t == pytest.approx(25.0)
     assert bench.events == ["obstacle ahead"] * 3
 
 
 def test_blind_it_does_not_move():
     bench = TrackerBench().step(10, ahead=3.0)
-    assert bench.step(20, ahead=3.0, blind=True).commands[-1] == (0.0, 0.0)
+    assert bench.step(10, ahead=3.0, blind=True).commands[-1] == (0.0, 0.0)
 
 
 def test_stale_inputs_mean_stop():
@@ -141,9 +215,9 @@ def test_stale_inputs_mean_stop():
 def test_parameters_of_the_tracker_count_while_running():
     bench = TrackerBench()
     with all_settable_are_read(bench.service):
-        bench.step(5, ahead=3.0).step(40, ahead=0.18)
-    bench = TrackerBench().step(5, ahead=3.0)
+        bench.step(5, ahead=3.0).step(20, ahead=0.18)
+    bench = TrackerBench().step(10, ahead=4.5)
     bench.service.params = TrackerParams(speed=0.1)
-    assert bench.step(5, ahead=3.0).commands[-1][0] == pytest.approx(0.1)
+    assert bench.step(8, ahead=4.5).speed == pytest.approx(0.1, abs=0.02)
     bench.service.params = TrackerParams(margin=1.0)
-    assert bench.step(3, ahead=1.0).commands[-1] == (0.0, 0.0)
+    assert bench.step(5, ahead=0.6).speed <= 0.0

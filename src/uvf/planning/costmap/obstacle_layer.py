@@ -16,18 +16,36 @@ from uvf.planning.costmap.inflation import FREE_SPACE, LETHAL, NO_INFORMATION, I
 
 Bytes = NDArray[np.uint8]
 Floats = NDArray[np.float64]
-Times = NDArray[np.float64]
+Stamps = NDArray[np.int32]
 Mask = NDArray[np.bool_]
 Point = tuple[float, float]
+Frame = tuple[float, float, float]
+
+LATELY = 1.0  # s
+LONG_AGO = -(2**30)  # ms
 
 
 @compiled
-def clear_beams(cells: Bytes, frame: tuple[float, float, float], eye: tuple[float, float], ends: Floats) -> None:
-    """Sets the cells that beams pass to free, without those in which they end.
+def mark_ends(cells: Bytes, seen: Floats, hit: Stamps, frame: Frame, ends: Floats, stamps: tuple[float, int]) -> None:
+    """Sets the cells of the points (n, 2) [m] to lethal, ``seen`` at an age and ``hit`` by a scan of a number; others are passed over.
 
-    cells: (rows, columns); frame: (x, y of cell [0, 0]'s corner, resolution) [m]; eye, ends (n, 2): [m], may lie outside.
+    frame: (x, y of cell [0, 0]'s corner, resolution) [m]; stamps: age, number.
+    """
+    rows, columns = cells.shape
+    for k in range(ends.shape[0]):
+        r, c = int(np.floor((ends[k, 1] - frame[1]) / frame[2])), int(np.floor((ends[k, 0] - frame[0]) / frame[2]))
+        if 0 <= r < rows and 0 <= c < columns:
+            cells[r, c], seen[r, c], hit[r, c] = LETHAL, stamps[0], stamps[1]
+
+
+@compiled
+def clear_beams(cells: Bytes, freed: Stamps, hit: Stamps, frame: Frame, beams: tuple[Point, Floats], stamps: tuple[int, int]) -> None:
+    """Sets the cells that beams pass to free, ``freed`` at a time, without those in which they end and those that the same scan has hit.
+
+    cells: (rows, columns); beams: from the eye to their ends (n, 2) [m], which may lie outside; stamps: time [ms], number of the scan.
     Bresenham's line from the eye's cell to the end's; what lies off the grid is passed over.
     """
+    eye, ends = beams
     rows, columns = cells.shape
     r0, c0 = int(np.floor((eye[1] - frame[1]) / frame[2])), int(np.floor((eye[0] - frame[0]) / frame[2]))
     for k in range(ends.shape[0]):
@@ -36,8 +54,8 @@ def clear_beams(cells: Bytes, frame: tuple[float, float, float], eye: tuple[floa
         step_r, step_c = (1 if r1 > r0 else -1), (1 if c1 > c0 else -1)
         error, r, c = across - down, r0, c0
         while r != r1 or c != c1:
-            if 0 <= r < rows and 0 <= c < columns:
-                cells[r, c] = FREE_SPACE
+            if 0 <= r < rows and 0 <= c < columns and hit[r, c] != stamps[1]:
+                cells[r, c], freed[r, c] = FREE_SPACE, stamps[0]
             twice = 2 * error
             if twice > -down:
                 error -= down
@@ -48,20 +66,22 @@ def clear_beams(cells: Bytes, frame: tuple[float, float, float], eye: tuple[floa
 
 
 @compiled
-def mark_ends(cells: Bytes, seen: Times, frame: tuple[float, float, float], ends: Floats, t: float) -> None:
-    """Sets the cells of the points (n, 2) [m] to lethal, seen at the age ``t``; points off the grid are passed over."""
-    rows, columns = cells.shape
-    for k in range(ends.shape[0]):
-        r, c = int(np.floor((ends[k, 1] - frame[1]) / frame[2])), int(np.floor((ends[k, 0] - frame[0]) / frame[2]))
-        if 0 <= r < rows and 0 <= c < columns:
-            cells[r, c] = LETHAL
-            seen[r, c] = t
+def stand_on(freed: Stamps, frame: Frame, points: Floats, since: int) -> Mask:
+    """(n,) whether the cells of the points (n, 2) [m] and all their neighbours were seen free after ``since`` [ms]; never off the grid."""
+    rows, columns = freed.shape
+    found = np.zeros(points.shape[0], dtype=np.bool_)
+    for k in range(points.shape[0]):
+        r, c = int(np.floor((points[k, 1] - frame[1]) / frame[2])), int(np.floor((points[k, 0] - frame[0]) / frame[2]))
+        if 0 < r < rows - 1 and 0 < c < columns - 1:
+            found[k] = freed[r - 1 : r + 2, c - 1 : c + 2].min() > since
+    return found
 
 
 @dataclass(frozen=True)
-class Observation:
-    """What one sensor saw from ``eye`` (x, y) [m] by beams to ``ends`` (n, 2) [m], all in the window's frame."""
+class BeamObservation:
+    """What one sensor saw at ``t`` [s] from ``eye`` (x, y) [m] by beams to ``ends`` (n, 2) [m], all in the window's frame."""
 
+    t: float
     age: float
     """What the lifetime of obstacles is measured by: time [s] or distance travelled [m]; it only rises."""
     eye: Point
@@ -84,6 +104,9 @@ class ObstacleLayer:
         self.resolution, self.obstacle_lifetime = resolution, obstacle_lifetime
         self.cells: Bytes = np.full((n, n), NO_INFORMATION, dtype=np.uint8)
         self._seen = np.zeros((n, n))
+        self._freed: Stamps = np.full((n, n), LONG_AGO, dtype=np.int32)
+        self._hit: Stamps = np.zeros((n, n), dtype=np.int32)  # is not moved with the window: it counts within one observation only
+        self._count, self._begun = 0, 0.0
         self._corner: tuple[int, int] | None = None  # row, column of cell [0, 0] in a grid that covers the plane
 
     @property
@@ -101,20 +124,33 @@ class ObstacleLayer:
             return
         down, across = row - self._corner[0], column - self._corner[1]
         self._corner = row, column
-        for array, empty in ((self.cells, NO_INFORMATION), (self._seen, 0.0)):
+        for array, empty in ((self.cells, NO_INFORMATION), (self._seen, 0.0), (self._freed, LONG_AGO)):
             _shift(array, down, across, empty)
 
-    def observe(self, seen: Observation) -> None:
-        """Clears along the beams and marks their ends; what is not finite is left out."""
+    def observe(self, seen: BeamObservation) -> None:
+        """Marks the beams' ends and clears along them; what is not finite is left out."""
+        self._begun = seen.t if self._count == 0 else self._begun
+        self._count += 1
         whole = np.isfinite(seen.ends).all(axis=1)
         frame = (*self.origin, self.resolution)
-        clear_beams(self.cells, frame, seen.eye, seen.ends[whole])
-        mark_ends(self.cells, self._seen, frame, seen.ends[whole & seen.hits], seen.age)
+        mark_ends(self.cells, self._seen, self._hit, frame, seen.ends[whole & seen.hits], (seen.age, self._count))
+        clear_beams(self.cells, self._freed, self._hit, frame, (seen.eye, seen.ends[whole]), (self._ms(seen.t), self._count))
+
+    def lately_free(self, t: float, points: Floats) -> Mask:
+        """(n,) whether something that ends beams at the points (n, 2) [m] at ``t`` [s] has come there.
+
+        The ground there and next to it was seen free within the second before; so it was not where a wall only comes into view.
+        """
+        return stand_on(self._freed, (*self.origin, self.resolution), points, self._ms(t - LATELY))
+
+    def _ms(self, t: float) -> int:
+        """Time since the first observation [ms]."""
+        return round(1000.0 * (t - self._begun))
 
     def forget(self, age: float) -> None:
-        """Frees obstacles that were last seen longer ago than ``obstacle_lifetime`` at ``age``."""
+        """Obstacles that were last seen longer ago than ``obstacle_lifetime`` at ``age`` are unknown again."""
         if np.isfinite(self.obstacle_lifetime):
-            self.cells[(self.cells == LETHAL) & (self._seen < age - self.obstacle_lifetime)] = FREE_SPACE
+            self.cells[(self.cells == LETHAL) & (self._seen < age - self.obstacle_lifetime)] = NO_INFORMATION
 
     def lethal_near(self, centre: Point, reach: float) -> Floats:
         """(n, 2) m centres of the obstacle cells within ``reach`` [m] of ``centre`` along both axes."""
@@ -133,6 +169,11 @@ class ObstacleLayer:
         part = self.cells[top : max(int(row + reach) + 2, 0), left : max(int(column + reach) + 2, 0)]
         down, across = np.ogrid[: part.shape[0], : part.shape[1]]
         part[(np.hypot(down + top - row, across + left - column) <= reach) & (part == LETHAL)] = FREE_SPACE
+
+    def has_room(self, place: Point, radius: float) -> bool:
+        """Whether no obstacle lies within ``radius`` [m] of a place [m]."""
+        near = self.lethal_near(place, radius)
+        return not (np.hypot(near[:, 0] - place[0], near[:, 1] - place[1]) < radius).any()
 
     def clear(self, beyond: float = 0.0, centre: Point | None = None) -> None:
         """Forgets everything farther than ``beyond`` [m] from ``centre`` [m]: it is unknown again (the resets of move_base)."""

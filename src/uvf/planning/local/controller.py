@@ -12,13 +12,13 @@ from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.planning.costmap.costmap import Costmap
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation, cost_factors
-from uvf.planning.costmap.obstacle_layer import Observation, ObstacleLayer
+from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
 from uvf.planning.costmap.own_ground import LEAVING, with_way_out
 from uvf.planning.local.goal_checker import GoalChecker, GoalTolerances, turn_to_heading
 from uvf.planning.local.planner import STOP, Limits, LocalPlanner, Situation, State, within
 from uvf.planning.local.swept_stop import safe_share
 from uvf.planning.local.window import WindowSettings, local_window
-from uvf.planning.moving.tracks import BESIDE, MovingObjects
+from uvf.planning.moving.tracks import BESIDE, MovingObjects, SeenFrom
 
 Floats = NDArray[np.float64]
 
@@ -29,7 +29,6 @@ LEAVING_COST = 30.0
 EVADED = 6.0  # m within which what moves may have to be evaded
 NEAR = 4.0  # m, farther points cannot be reached before the next scan
 REMEMBERED = 1.0  # m within which the stop heeds obstacles that are out of view
-ROOM_WINDOW = 0.5  # m more than the footprint in which room to turn is looked for
 TURN_COUNTS = 0.3  # m/rad
 WAY_OUT = 0.3  # m about the vehicle within which it may leave such ground
 
@@ -46,6 +45,7 @@ class ControllerSettings:
     cost_travel_multiplier: float = 4.0
     margin: float = 0.02  # m round the footprint, for plans
     stop_margin: float = 0.01  # m round the footprint, for the stop
+    slip: float = 0.01  # s^2, of speed times turn rate: what is added to it where wheels slide sideways in a curve
     window: WindowSettings = field(default_factory=WindowSettings)
     period: float = 0.05  # s from one command to the next
     delay: float = 0.05  # s from a measurement to the wheels
@@ -102,14 +102,14 @@ class LocalController:
         ends = transform(pose, points)
         (x, y), *_ = transform(pose, np.array((eye,))).tolist()
         self.layer.recentre((pose[0], pose[1]))
-        moves = self.moving.observe(t, (x, y), ends, ranges)
+        moves = self.moving.observe(t, ends, ranges, SeenFrom((x, y), self.layer.lately_free(t, ends)))
         hits = (ranges > 0.0) & (ranges <= self.settings.obstacle_range) & ~moves
         far = np.maximum(ranges, 1e-9) > self.settings.obstacle_range
         if far.any():
             share = np.where(far, self.settings.obstacle_range / np.maximum(ranges, 1e-9), 1.0)[:, None]
             ends = np.array((x, y)) + (ends - np.array((x, y))) * share
         self._travel(pose)
-        self.layer.observe(Observation(self._odometer, (x, y), ends, hits))
+        self.layer.observe(BeamObservation(t, self._odometer, (x, y), ends, hits))
         self.layer.forget(self._odometer)
         for mx, my, _, _, radius in self.moving.moving():  # it was marked before it was known to move
             self.layer.free_disc((mx, my), radius + BESIDE)
@@ -145,9 +145,7 @@ class LocalController:
 
     def has_room_to_turn(self, pose: Pose2) -> bool:
         """Whether no known obstacle is in the way of turning on the spot."""
-        costs = self.costmap(2.0 * self.footprint.circumscribed_radius + ROOM_WINDOW)
-        cell = costs.cell(pose[0], pose[1])
-        return not costs.holds(cell) or int(costs.blocked[cell]) == 0
+        return self.layer.has_room((pose[0], pose[1]), self._plan_footprint.circumscribed_radius)
 
     def leaving(self, costs: Costmap, pose: Pose2) -> Costmap:
         """The costmap in which the vehicle may leave a place that is too near to an obstacle."""
@@ -225,7 +223,10 @@ class LocalController:
         s = self.settings
         brake = (s.reaction, s.braking, s.angular_braking)
         faster = tuple(m if abs(m) > abs(w) else w for w, m in zip(wanted, velocity, strict=True))
-        share = min(safe_share(self._near, v, self.footprint, s.stop_margin, brake) for v in (wanted, (faster[0], faster[1])))
+        share = min(
+            safe_share(self._near, v, self.footprint, s.stop_margin + s.slip * abs(v[0] * v[1]), brake)
+            for v in (wanted, (faster[0], faster[1]))
+        )
         return share * wanted[0], share * wanted[1]
 
     def _ahead(self, pose: Pose2, velocity: tuple[float, float], limits: Limits) -> State:

@@ -1,6 +1,7 @@
 """Model predictive path integral control (Williams, Aldrich, Theodorou 2017): the commands that many random futures agree on."""
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,8 @@ POOL = 4
 """Times as much noise as one round needs is drawn at the start; a round takes a part of it from a random place."""
 AT_ONCE = 0.95
 """Share of the horizon after a contact from which no future is worth driving."""
+TURN_FIRST = (0.5, 1.0, 1.6, 2.2, 2.7, 3.2)
+"""rad by which manoeuvres turn on the spot before they drive on."""
 SMOOTH = np.array((-3.0, 12.0, 17.0, 12.0, -3.0)) / 35.0
 """Savitzky-Golay of five points, quadratic."""
 
@@ -35,11 +38,13 @@ class MppiSettings:
     temperature: float = 0.3
     collision_weight: float = 60.0
     cost_weight: float = 3.0
-    to_go_weight: float = 2.0  # 1/m
-    mean_to_go_weight: float = 1.5  # 1/m
-    off_path_weight: float = 0.3  # 1/m
-    reverse_weight: float = 1.5  # 1/m
-    turn_weight: float = 0.05  # s/rad
+    to_go_weight: float = 8.0  # per way at full speed within the horizon, as all weights of lengths
+    mean_to_go_weight: float = 6.0
+    off_path_weight: float = 1.2
+    reverse_weight: float = 6.0
+    aside_weight: float = 6.0
+    """Of the way that the vehicle would make at full speed in the time that it needs to turn to the way on."""
+    turn_weight: float = 0.1  # per largest turn rate
     near_weight: float = 15.0
     fast_weight: float = 6.0
     close_weight: float = 10.0
@@ -75,7 +80,7 @@ class Mppi:
         others = Others(now.obstacles, *self._outline, settings.heed, settings.growth, settings.doubt)
         offset = int(self._rng.integers(0, (POOL - 1) * settings.samples + 1))
         spread = (settings.speed_noise * (limits.max_speed - min(limits.min_speed, 0.0)), settings.turn_noise * limits.max_turn_rate)
-        _draw(self._plan, (self._noise, offset, spread), _steady(limits, settings), self._commands)
+        _draw(self._plan, (self._noise, offset, spread), _manoeuvres(limits, settings), self._commands)
         _clip(self._commands, limits)
         roll_out(grids, start, self._commands, (settings.step, limits), others, self._found)
         costs = self._found @ self._weights
@@ -96,15 +101,14 @@ class Mppi:
 
     @property
     def _weights(self) -> Floats32:
-        s, weights = self.settings, np.zeros(FEATURES, dtype=np.float32)
+        s, limits = self.settings, self._limits
+        way, weights = s.steps * s.step * limits.max_speed, np.zeros(FEATURES, dtype=np.float32)
         weights[rollout.COLLIDED], weights[rollout.COST], weights[rollout.NEAR] = s.collision_weight, s.cost_weight, s.near_weight
-        weights[rollout.TO_GO], weights[rollout.MEAN_TO_GO], weights[rollout.OFF_PATH] = (
-            s.to_go_weight,
-            s.mean_to_go_weight,
-            s.off_path_weight,
-        )
+        weights[rollout.TO_GO], weights[rollout.MEAN_TO_GO] = s.to_go_weight / way, s.mean_to_go_weight / way
+        weights[rollout.OFF_PATH], weights[rollout.REVERSED] = s.off_path_weight / way, s.reverse_weight / way
         weights[rollout.FAST], weights[rollout.CLOSE] = s.fast_weight, s.close_weight
-        weights[rollout.REVERSED], weights[rollout.TURNED] = s.reverse_weight, s.turn_weight
+        weights[rollout.TURNED] = s.turn_weight / limits.max_turn_rate
+        weights[rollout.ASIDE] = s.aside_weight / way * limits.max_speed / limits.max_turn_rate
         return weights
 
     def _smooth(self) -> None:
@@ -113,12 +117,22 @@ class Mppi:
             self._plan[:, k] = np.convolve(padded, SMOOTH, mode="valid")
 
 
-def _steady(limits: Limits, settings: MppiSettings) -> Floats32:
-    """(k, 2) commands held for the whole horizon: they find a way where noise round the last plan does not."""
+def _manoeuvres(limits: Limits, settings: MppiSettings) -> Floats32:
+    """(k, steps, 2) commands that find a way where noise round the last plan does not: held steady, or turning first and then driving."""
     speeds = np.linspace(limits.min_speed, limits.max_speed, 9)
     turns = np.linspace(-limits.max_turn_rate, limits.max_turn_rate, 13)
-    pairs = np.stack(np.meshgrid(speeds, turns, indexing="ij"), axis=-1).reshape(-1, 2)
-    return pairs[: settings.samples // 2].astype(np.float32)
+    pairs = np.stack(np.meshgrid(speeds, turns, indexing="ij"), axis=-1).reshape(-1, 1, 2)
+    steady = np.repeat(pairs, settings.steps, axis=1)
+    turning = []
+    for angle in TURN_FIRST:
+        first = min(ceil(angle / limits.max_turn_rate / settings.step), settings.steps)
+        for speed in (0.4 * limits.max_speed, 0.8 * limits.max_speed):
+            for rate in (-limits.max_turn_rate, limits.max_turn_rate):
+                commands = np.tile((speed, 0.0), (settings.steps, 1))
+                commands[:first] = 0.0, rate
+                turning.append(commands)
+    both: Floats32 = np.concatenate((np.array(turning), steady)).astype(np.float32)[: settings.samples // 2]
+    return both
 
 
 def _coloured(white: Floats, memory: float) -> Floats:
@@ -130,8 +144,8 @@ def _coloured(white: Floats, memory: float) -> Floats:
 
 
 @compiled
-def _draw(plan: Floats, noises: tuple[Floats32, int, tuple[float, float]], steady: Floats32, out: Floats32) -> None:
-    """The last plan itself, commands held steady, and the plan with noise: (of unit deviation, the row to begin with, deviations)."""
+def _draw(plan: Floats, noises: tuple[Floats32, int, tuple[float, float]], manoeuvres: Floats32, out: Floats32) -> None:
+    """The last plan itself, the manoeuvres, and the plan with noise: (of unit deviation, the row to begin with, deviations)."""
     noise, offset, spread = noises
     samples, steps = out.shape[0], out.shape[1]
     for k in range(samples):
@@ -139,8 +153,8 @@ def _draw(plan: Floats, noises: tuple[Floats32, int, tuple[float, float]], stead
             for j in range(2):
                 if k == 0:
                     out[k, i, j] = plan[i, j]
-                elif k <= steady.shape[0]:
-                    out[k, i, j] = steady[k - 1, j]
+                elif k <= manoeuvres.shape[0]:
+                    out[k, i, j] = manoeuvres[k - 1, i, j]
                 else:
                     out[k, i, j] = plan[i, j] + spread[j] * noise[offset + k, i, j]
 

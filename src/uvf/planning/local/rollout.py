@@ -16,6 +16,9 @@ Motion = tuple[float, float, float, float, float, float, float]
 """x, y [m], yaw [rad], speed [m/s], turn rate [rad/s], cosine and sine of yaw."""
 
 UNSEEN = 4.0
+APART = 3.0  # cells on either side between which the way to go is compared
+STEEPEST = 40.0  # fall of the way to go beyond which one side of it lies where no way leads
+LAST = 0.5  # m
 
 
 class Others(NamedTuple):
@@ -32,13 +35,13 @@ class Others(NamedTuple):
     """m, m/s: distance over which nearness falls to 1/e, now, and by how much more the farther ahead one looks."""
 
 
-FEATURES = 11
-COLLIDED, COST, WORST, TO_GO, MEAN_TO_GO, OFF_PATH, REVERSED, TURNED, NEAR, FAST, CLOSE = range(FEATURES)
+FEATURES = 12
+COLLIDED, COST, WORST, TO_GO, MEAN_TO_GO, OFF_PATH, REVERSED, TURNED, NEAR, FAST, CLOSE, ASIDE = range(FEATURES)
 """Columns of what a rollout finds: share of the horizon [0..1] that comes after the first contact (0: none); mean cost [0..1]; largest
 cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards [m], ``UNSEEN`` times
 as much over unknown ground; mean turn rate [rad/s]; greatest nearness to moving obstacles [0..1, 1 = contact, exponential]; mean cost
-times the square of the share of the largest speed [0..1]; share of the horizon within the soft margin of an obstacle, weighed by 0.3 and
-the share of the largest speed."""
+times the square of the share of the largest speed [0..1]; share of the horizon within the soft margin of an obstacle, weighed by 0.3
+and the share of the largest speed; angle [rad] at the end between the heading and the way on, less on the last half metre."""
 
 
 @compiled
@@ -147,6 +150,20 @@ def _closest(discs: Floats, count: int, others: Others, motion: Motion) -> float
 
 
 @compiled
+def _aside(grids: Grids, motion: Motion, to_go: float) -> float:
+    """Angle [rad] between the heading and the direction in which the way to go falls, less where little of it is left."""
+    x, y, _, _, _, cosine, sine = motion
+    x, y = (x - grids.frame[0]) / grids.frame[2], (y - grids.frame[1]) / grids.frame[2]
+    ahead = _sample(grids.to_go, x - APART, y) - _sample(grids.to_go, x + APART, y)
+    left = _sample(grids.to_go, x, y - APART) - _sample(grids.to_go, x, y + APART)
+    steep = np.hypot(ahead, left)
+    if not 0.0 < steep < STEEPEST * APART * grids.frame[2]:
+        return 0.0
+    angle: float = np.arccos(min(max((ahead * cosine + left * sine) / steep, -1.0), 1.0))
+    return angle * min(to_go / LAST, 1.0)
+
+
+@compiled
 def _roll(
     grids: Grids,
     state: State,
@@ -199,6 +216,7 @@ def _roll(
     out[TO_GO], out[MEAN_TO_GO], out[OFF_PATH] = to_go, mean_to_go / horizon, off_path / horizon
     out[REVERSED], out[TURNED], out[NEAR] = back, turned / horizon, near
     out[FAST], out[CLOSE] = fast / (252.0 * horizon), close / horizon
+    out[ASIDE] = _aside(grids, motion, to_go)
 
 
 @compiled

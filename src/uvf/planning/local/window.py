@@ -15,6 +15,7 @@ from uvf.planning.search.grid_search import GridSearch
 
 Bytes = NDArray[np.uint8]
 Mask = NDArray[np.bool_]
+Cells = NDArray[np.int64]
 Bits = NDArray[np.uint64]
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -69,11 +70,15 @@ def local_window(costs: Costmap, here: Point, path: Floats, factors: Floats, set
     cells = np.floor((path[:, ::-1] - corner[::-1]) / costs.resolution).astype(np.int64)
     inside = ((cells >= 0) & (cells < values.shape)).all(axis=1)
     to_go, off_path = np.full(values.shape, UNREACHED), np.full(values.shape, UNREACHED)
-    seed = _seed(values, cells, inside, factors)
-    if seed >= 0:
-        beyond = float(np.hypot(*np.diff(path[seed:], axis=0).T).sum()) if seed + 1 < len(path) else 0.0
+    run, good = _in_window(values, cells, inside, factors)
+    here_in_window = (min(max(row - window[0].start, 0), values.shape[0] - 1), min(max(column - window[1].start, 0), values.shape[1] - 1))
+    for seed in _seeds(run, good):
+        beyond = float(np.hypot(*np.diff(path[seed:], axis=0).T).sum())
         field = GridSearch(values, factors).cost_to_go((int(cells[seed, 0]), int(cells[seed, 1]))).cost * costs.resolution + beyond
         to_go = np.where(np.isfinite(field), field, UNREACHED)
+        if to_go[here_in_window] < UNREACHED:
+            break
+    if inside.any():
         marks = np.zeros(values.shape, dtype=np.bool_)
         marks[cells[inside, 0], cells[inside, 1]] = True
         off_path = distance_field(marks) * costs.resolution
@@ -86,12 +91,22 @@ def local_window(costs: Costmap, here: Point, path: Floats, factors: Floats, set
     return Grids(values, seen, blocked, close, to_go.astype(np.float32), off_path.astype(np.float32), (*corner, costs.resolution))
 
 
-def _seed(values: Bytes, cells: NDArray[np.int64], inside: Mask, factors: Floats) -> int:
-    """Index of the last point of the path that lies in the window, before it leaves it for the first time, and is passable; -1: none."""
+def _in_window(values: Bytes, cells: Cells, inside: Mask, factors: Floats) -> tuple[Cells, Mask]:
+    """Indices (k,) of the path's points in the window before it leaves it for the first time, and which of them are passable (k,)."""
     first = np.flatnonzero(inside)
-    if not len(first):
-        return -1
     gaps = np.flatnonzero(np.diff(first) > 1)
     run = first[: gaps[0] + 1] if len(gaps) else first
-    good = run[factors[values[cells[run, 0], cells[run, 1]]] >= 0.0]
-    return int(good[-1]) if len(good) else -1
+    return run, factors[values[cells[run, 0], cells[run, 1]]] >= 0.0
+
+
+def _seeds(run: Cells, good: Mask) -> list[int]:
+    """Indices of the points of the path from which the way to go is measured, the better ones first.
+
+    That is the last one in the window that is passable; where something across the whole window lies before it, the last one
+    that is passable before the first that is not.
+    """
+    if not good.any():
+        return []
+    begin = int(np.argmax(good))
+    block = begin + int(np.argmin(good[begin:])) if not good[begin:].all() else len(run)
+    return [int(run[np.flatnonzero(good)[-1]]), int(run[block - 1])]

@@ -14,6 +14,9 @@ Point = tuple[float, float]
 
 NEVER = 1e6
 FIRST_SPEED = 2.0  # m/s, 1 sigma of what is seen for the first time
+FRESH = 0.3  # weight of the last scan
+SURE = 0.5
+PART = 0.3  # of a thing's points
 BESIDE = 0.15
 """m beyond the radius of a thing that moves, within which what is seen is part of it."""
 
@@ -37,6 +40,14 @@ class TrackSettings:
     farthest: float = 20.0  # m
 
 
+@dataclass(frozen=True)
+class SeenFrom:
+    """Where a scan was taken, and which of its points (n,) lie on ground that was free just before: something has come there."""
+
+    eye: Point
+    entered: Mask
+
+
 @dataclass
 class Track:
     """One thing: x, y [m], vx, vy [m/s], their covariance, and its radius [m]."""
@@ -48,6 +59,9 @@ class Track:
     """(2,) m, where it was first seen whole, or at all."""
     whole: int = 0
     """How often nothing covered a part of it; the visible part of a wall between two other things wanders along with the vehicle."""
+    entered: float = 0.0
+    """Share [0..1] of the last scans in which it stood on ground that had been free."""
+    has_left: bool = False  # beams pass where it was first seen
     hits: int = 1
     unseen: float = 0.0  # s, in view without being seen
     hidden: float = 0.0  # s, out of view
@@ -55,11 +69,14 @@ class Track:
     """Whether it was found to move when it was last seen."""
 
     def judge(self, settings: TrackSettings) -> None:
-        """Finds whether it moves: its speed is large enough, and has brought it somewhere; at first it must be sure enough too."""
+        """Finds whether it moves: its speed is large enough, and has brought it somewhere; at first it must be sure enough too.
+
+        The middle of what comes into view bit by bit moves as well; but it does not come onto ground that was free.
+        """
         speed = float(np.hypot(self.state[2], self.state[3]))
         if self.whole < settings.least_hits or speed < settings.least_speed:
             self.moves = False
-        elif not self.moves:
+        elif not self.moves and (self.has_left or self.entered >= SURE):
             along = self.state[2:] / speed
             deviation = float(np.sqrt(along @ self.covariance[2:, 2:] @ along))
             gone = float(np.hypot(*(self.state[:2] - self.born)))
@@ -75,13 +92,14 @@ class MovingObjects:
     tracks: list[Track] = field(default_factory=list)
     _t: float | None = None
 
-    def observe(self, t: float, eye: Point, points: Floats, ranges: Floats) -> Mask:
-        """Takes a scan at ``t`` [s]: points (n, 2) [m] in the order of the beams, ranges (n,) [m], 0 = none, from ``eye`` [m].
+    def observe(self, t: float, points: Floats, ranges: Floats, seen_from: SeenFrom) -> Mask:
+        """Takes a scan at ``t`` [s]: points (n, 2) [m] in the order of the beams, ranges (n,) [m], 0 = none.
 
         Returns the mask (n,) of beams that see something which moves. A scan that is no newer than the last is passed over.
         """
         if self._t is not None and t <= self._t:
             return np.zeros(len(ranges), dtype=np.bool_)
+        eye = seen_from.eye
         dt, self._t = (0.0 if self._t is None else t - self._t), t
         self._predict(dt)
         seen = np.where(ranges <= self.settings.farthest, ranges, 0.0)
@@ -94,11 +112,19 @@ class MovingObjects:
         found = {id(track) for track in matched.values()}
         self._age(dt, [track for track in self.tracks if id(track) not in found], (eye, points, seen))
         moving = np.zeros(count, dtype=np.bool_)
+        entered = np.bincount(labels[labels >= 0], seen_from.entered[labels >= 0], count) / np.maximum(
+            np.bincount(labels[labels >= 0], minlength=count), 1
+        )
         for k, disc in enumerate(discs):
             if (track := matched.get(k)) is None:
                 self.tracks.append(self._begin(disc))
                 continue
             self._correct(track, disc)
+            track.entered += FRESH * (float(entered[int(disc[LABEL])] >= PART) - track.entered)
+            if not track.has_left and float(np.hypot(*(track.state[:2] - track.born))) > track.radius:
+                track.has_left = _passes(track.born, track.radius, eye, points, seen)
+            if track.moves or not disc[HIDDEN]:
+                track.judge(self.settings)
             moving[int(disc[LABEL])] = track.moves
         mask: Mask = np.zeros(len(ranges), dtype=np.bool_)
         mask[labels >= 0] = moving[labels[labels >= 0]]
@@ -157,13 +183,11 @@ class MovingObjects:
             track.radius += 0.3 * (float(disc[RADIUS]) - track.radius)
             track.whole += 1
         track.hits, track.unseen, track.hidden = track.hits + 1, 0.0, 0.0
-        if track.moves or not disc[HIDDEN]:
-            track.judge(self.settings)
 
     def _age(self, dt: float, missed: list[Track], scan: tuple[Point, Floats, Floats]) -> None:
         """Drops tracks that have not been seen for too long: soon where they should be seen, later where they cannot be."""
         for track in missed:
-            if _in_view(track, *scan):
+            if _passes(track.state[:2], track.radius, *scan):
                 track.unseen += dt
             else:
                 track.hidden += dt
@@ -172,10 +196,10 @@ class MovingObjects:
         self.tracks = [k for k in kept if k.hits > 1 or not k.hidden]
 
 
-def _in_view(track: Track, eye: Point, points: Floats, ranges: Floats) -> bool:
-    """Whether a beam passes the place where the thing should be, and ends behind it."""
-    dx, dy = track.state[0] - eye[0], track.state[1] - eye[1]
+def _passes(place: Floats, radius: float, eye: Point, points: Floats, ranges: Floats) -> bool:
+    """Whether a beam passes the middle of a disc at ``place`` (2,) [m] of ``radius`` [m], and ends behind it."""
+    dx, dy = place[0] - eye[0], place[1] - eye[1]
     distance = float(np.hypot(dx, dy))
     along, across = (points[:, 0] - eye[0]) * dx + (points[:, 1] - eye[1]) * dy, (points[:, 1] - eye[1]) * dx - (points[:, 0] - eye[0]) * dy
-    aimed = (along > 0.0) & (np.abs(across) <= 0.5 * track.radius / max(distance, 1e-6) * along)
-    return bool((aimed & ((ranges <= 0.0) | (ranges > distance + track.radius))).any())
+    aimed = (along > 0.0) & (np.abs(across) <= 0.5 * radius / max(distance, 1e-6) * along)
+    return bool((aimed & ((ranges <= 0.0) | (ranges > distance + radius))).any())

@@ -13,6 +13,7 @@ class Failure(Enum):
     START_OUTSIDE_MAP = "the vehicle is outside its map: its pose or the map is wrong"
     GOAL_OCCUPIED = "the goal lies in an obstacle"
     GOAL_OUTSIDE_MAP = "the goal lies outside the map"
+    GOAL_TOO_FAR = "the goal is too far to plan"
     NO_VALID_PATH = "no way leads to the goal"
     NO_VALID_CONTROL = "every velocity leads into an obstacle"
     BLOCKED = "an obstacle stands in the way and does not leave"
@@ -48,13 +49,14 @@ def recoveries(failure: Failure, circumscribed_radius: float) -> tuple[Attempt, 
     """
     conservative, aggressive = Attempt(Recovery.CONSERVATIVE_RESET, 3.0), Attempt(Recovery.AGGRESSIVE_RESET, 4.0 * circumscribed_radius)
     rotation, back_up = Attempt(Recovery.CLEARING_ROTATION, 6.28), Attempt(Recovery.BACK_UP, 0.3)
+    wait, long_wait = Attempt(Recovery.WAIT, 4.0), Attempt(Recovery.WAIT, 8.0)
     by_failure = {
         Failure.START_OCCUPIED: (aggressive, back_up, rotation),
-        Failure.GOAL_OCCUPIED: (conservative, Attempt(Recovery.WAIT, 5.0)),
-        Failure.NO_VALID_PATH: (conservative, rotation, aggressive, rotation, Attempt(Recovery.WAIT, 5.0)),
-        Failure.NO_VALID_CONTROL: (conservative, back_up, rotation, aggressive, back_up, Attempt(Recovery.WAIT, 5.0)),
-        Failure.BLOCKED: (Attempt(Recovery.WAIT, 5.0), conservative, back_up, Attempt(Recovery.WAIT, 5.0), rotation, aggressive),
-        Failure.FAILED_TO_MAKE_PROGRESS: (conservative, rotation, aggressive, back_up, Attempt(Recovery.WAIT, 3.0)),
+        Failure.GOAL_OCCUPIED: (conservative, long_wait),
+        Failure.NO_VALID_PATH: (conservative, rotation, aggressive, rotation, wait),
+        Failure.NO_VALID_CONTROL: (conservative, back_up, rotation, aggressive, back_up, wait),
+        Failure.BLOCKED: (long_wait, conservative, rotation, long_wait, aggressive, wait),
+        Failure.FAILED_TO_MAKE_PROGRESS: (conservative, rotation, aggressive, back_up, wait),
         Failure.OSCILLATING: (conservative, rotation, aggressive, back_up),
     }
     return by_failure.get(failure, ())

@@ -29,6 +29,7 @@ class NavigationGoal:
     x: float
     y: float
     yaw: float | None = None
+    tolerance: float = 0.25  # m from it that counts as there
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,6 @@ class Status(Enum):
 class NavigatorSettings:
     """How patiently a goal is driven to."""
 
-    goal_tolerance: float = 0.25  # m
     yaw_goal_tolerance: float = 0.1  # rad
     replan_period: float = 1.0  # s
     recovered: float = 1.0  # m of the way by which it must have become shorter for recoveries to begin from the first again
@@ -111,25 +111,43 @@ class Navigator:
         self._planned_at = -inf
         self._tried = 0
         self._count, self._begun_with = 0, inf
-        self._until = -inf
+        self._begun_at: Pose2 | None = None
+        self._until, self._waits = -inf, False
         self._speed, self._blocked_at = 0.0, -inf
         self._at: tuple[float, Pose2] | None = None
+
+    def fit(self, settings: NavigatorSettings) -> None:
+        """Is as patient as ``settings`` say from now on."""
+        self.settings = settings
+        self._progress.settings = settings.progress
+
+    def replan(self) -> None:
+        """Plans anew in the next step."""
+        self._planned_at = -inf
 
     def start(self, t: float, goal: NavigationGoal) -> None:
         """Takes a goal at ``t`` [s]; the one before is preempted."""
         if not (np.isfinite(goal.x) and np.isfinite(goal.y) and (goal.yaw is None or np.isfinite(goal.yaw))):
             raise ValueError(f"goal: ({goal.x}, {goal.y}, {goal.yaw}); its coordinates must be finite [m, m, rad]")
-        self._tell(t, f"goal ({goal.x:.2f}, {goal.y:.2f})" + (", the one before is preempted" if self.is_busy else ""))
         self._goal, self._status = goal, Status.FOLLOWING
         self._failure, self._reason = Failure.NONE, ""
-        self._tried, self._count, self._begun_with, self._until = 0, 0, inf, -inf
+        self._tried, self._count, self._until = 0, 0, -inf
+        self._begun_with, self._begun_at = inf, None
         self._planned_at, self._at = -inf, None
-        self._direct(Action.STOP)
+        self._progress.new_way(t)
+        if self._directive.action != Action.FOLLOW:
+            self._direct(Action.STOP)
 
     def cancel(self, t: float) -> None:
         """Gives the goal up because somebody asked for it; the vehicle stops."""
         if self.is_busy:
             self._end(t, Status.CANCELLED, Failure.CANCELLED, "")
+
+    def pause(self, t: float, pose: Pose2) -> None:
+        """The vehicle stands, or drives, because somebody else commands it: that is no lack of progress."""
+        self._progress.reset(t, pose)
+        if self._status == Status.RECOVERING:
+            self._status, self._planned_at = Status.FOLLOWING, -inf
 
     @property
     def is_busy(self) -> bool:
@@ -151,7 +169,7 @@ class Navigator:
         if self._is_reached(pose, self._goal):
             self._end(t, Status.REACHED, Failure.NONE, "")
         elif self._status == Status.RECOVERING:
-            self._recover_on(t, pose, report)
+            self._recover_on(t, pose, self._goal, report)
         if self._status == Status.FOLLOWING:
             self._follow(t, pose, self._goal, report)
         return self._directive
@@ -159,8 +177,7 @@ class Navigator:
     def _follow(self, t: float, pose: Pose2, goal: NavigationGoal, report: Report) -> None:
         blocked = self._directive.action == Action.FOLLOW and not self._source.is_free(self._directive.path)
         if t - self._planned_at >= self.settings.replan_period or blocked or self._directive.action != Action.FOLLOW:
-            self._planned_at = t
-            route = self._source.plan(pose, goal)
+            route = self._plan(t, pose, goal)
             if route.path is None:
                 self._fail(t, pose, route.failure, route.reason)
                 return
@@ -177,10 +194,15 @@ class Navigator:
     def _watch(self, t: float, pose: Pose2, report: Report) -> None:
         left = _remaining(self._directive.path, pose)
         self._progress.look(t, pose, left)
-        if left <= self._begun_with - self.settings.recovered:
+        begun = self._begun_at
+        if (
+            begun is not None
+            and hypot(pose[0] - begun[0], pose[1] - begun[1]) >= self.settings.recovered
+            and left <= self._begun_with - self.settings.recovered
+        ):
             if self._tried:
                 self._tell(t, "recovered: the vehicle gets on")
-            self._tried, self._begun_with = 0, left
+            self._tried, self._begun_with, self._begun_at = 0, inf, None
         if self._progress.is_standing(t):
             cause = {Drive.NO_VALID_CONTROL: Failure.NO_VALID_CONTROL, Drive.STOPPED: Failure.BLOCKED}
             self._fail(t, pose, cause.get(report.how, Failure.FAILED_TO_MAKE_PROGRESS), "")
@@ -200,14 +222,16 @@ class Navigator:
             self._fail(t, pose, failure, reason)
             return
         self._count += 1
-        if self._begun_with == inf and self._directive.action == Action.FOLLOW:
-            self._begun_with = _remaining(self._directive.path, pose)
+        if self._begun_at is None:
+            self._begun_at = pose
+            self._begun_with = _remaining(self._directive.path, pose) if self._directive.action == Action.FOLLOW else inf
         self._begin(t, attempt, failure, reason)
 
     def _begin(self, t: float, attempt: Attempt, failure: Failure, reason: str) -> None:
         self._tell(t, f"{attempt.recovery.value}, because {reason or failure.value}")
         self._status = Status.RECOVERING
         kind, amount = attempt.recovery, attempt.amount
+        self._waits = kind == Recovery.WAIT
         if kind in (Recovery.CONSERVATIVE_RESET, Recovery.AGGRESSIVE_RESET):
             self._direct(Action.STOP, clear_beyond=amount)
             if kind == Recovery.AGGRESSIVE_RESET:
@@ -220,23 +244,28 @@ class Navigator:
             self._direct(Action.SPIN if kind == Recovery.CLEARING_ROTATION else Action.BACK_UP, amount=amount)
             self._until = t + LONGEST
 
-    def _recover_on(self, t: float, pose: Pose2, report: Report) -> None:
+    def _recover_on(self, t: float, pose: Pose2, goal: NavigationGoal, report: Report) -> None:
         mine = report.number == self._directive.number
         if mine and report.impossible:
             self._tell(t, f"impossible to {self._directive.action.value}: an obstacle is in the way")
+        elif self._waits:  # whatever stood in the way may leave before the time is over
+            if t < self._until and (t - self._planned_at < self.settings.replan_period or self._plan(t, pose, goal).path is None):
+                return
         elif not (t >= self._until or (mine and report.done)):
             return
         self._status, self._planned_at = Status.FOLLOWING, -inf
 
+    def _plan(self, t: float, pose: Pose2, goal: NavigationGoal) -> Route:
+        self._planned_at = t
+        return self._source.plan(pose, goal)
+
     def _is_reached(self, pose: Pose2, goal: NavigationGoal) -> bool:
-        if hypot(pose[0] - goal.x, pose[1] - goal.y) > self.settings.goal_tolerance:
+        if hypot(pose[0] - goal.x, pose[1] - goal.y) > goal.tolerance:
             return False
         return goal.yaw is None or abs(wrap(pose[2] - goal.yaw)) <= self.settings.yaw_goal_tolerance
 
     def _end(self, t: float, status: Status, failure: Failure, reason: str) -> None:
         self._status, self._failure, self._reason = status, failure, reason
-        why = reason or failure.value
-        self._tell(t, status.value + (f": {why}" if why else ""))
         self._direct(Action.STOP)
 
     def _direct(self, action: Action, amount: float = 0.0, clear_beyond: float | None = None) -> None:

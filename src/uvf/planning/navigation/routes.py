@@ -23,10 +23,12 @@ class LayerRoutes:
 
     def __init__(self, controller: LocalController) -> None:
         self._controller = controller
+        self._known_free = KnownFree()
 
     def plan(self, pose: Pose2, goal: NavigationGoal) -> Route:
         """The best path to the goal, or to the place in its direction where the window ends."""
-        return route_over(self._controller.leaving(self._controller.costmap(), pose), self._controller.factors, pose, goal)
+        costs = self._controller.leaving(self._controller.costmap(), pose)
+        return self._known_free.judged(route_over(costs, self._controller.factors, pose, goal), costs)
 
     def is_free(self, path: Floats) -> bool:
         """Whether the vehicle's centre may still be everywhere on the path."""
@@ -38,6 +40,37 @@ class LayerRoutes:
 
     def reset(self) -> None:
         """Nothing is known but what the layer holds."""
+
+
+class KnownFree:
+    """Where the last paths led over ground that was known to be free: if an obstacle is there now, it has come, and may leave again."""
+
+    def __init__(self) -> None:
+        self._points: Floats = np.zeros((0, 2))
+
+    def judged(self, route: Route, costs: Costmap) -> Route:
+        """The route; a failure to find one becomes ``Failure.BLOCKED`` where something has come."""
+        cells, inside = _cells(costs, self._points)
+        values = costs.values[cells[:, 0], cells[:, 1]]
+        taken = self._points[inside][(values >= INSCRIBED) & (values < NO_INFORMATION)]
+        if route.path is not None:
+            self._points = np.concatenate((taken, _well_known(costs, route.path)))
+        elif route.failure == Failure.NO_VALID_PATH and len(taken):
+            return Route(None, Failure.BLOCKED)
+        return route
+
+
+def _well_known(costs: Costmap, path: Floats) -> Floats:
+    """The points of a path (n, 2) [m] within whose inscribed radius all ground is known: no wall comes into view there later."""
+    cells, inside = _cells(costs, path)
+    reach = int(np.ceil(costs.footprint.inscribed_radius / costs.resolution))
+    around = np.arange(-reach, reach + 1)
+    rows, columns = np.array(costs.values.shape)[:, None, None, None] - 1
+    patches = costs.values[
+        np.clip(cells[:, 0, None, None] + around[:, None], 0, rows), np.clip(cells[:, 1, None, None] + around[None, :], 0, columns)
+    ]
+    known: Floats = path[inside][(patches != NO_INFORMATION).all(axis=(1, 2))]
+    return known
 
 
 def route_over(costs: Costmap, factors: Floats, pose: Pose2, goal: NavigationGoal) -> Route:
@@ -63,11 +96,16 @@ def route_over(costs: Costmap, factors: Floats, pose: Pose2, goal: NavigationGoa
 
 def still_free(costs: Costmap, path: Floats) -> bool:
     """Whether the vehicle's centre may be everywhere on a path (n, 2) [m], but for its very beginning, where the vehicle stands."""
-    ahead = path[np.hypot(*(path - path[0]).T) > UNDERFOOT] if len(path) else path
-    cells = np.floor((ahead[:, ::-1] - np.array(costs.origin)[::-1]) / costs.resolution).astype(np.int64)
-    inside = ((cells >= 0) & (cells < costs.values.shape)).all(axis=1)
-    values = costs.values[cells[inside, 0], cells[inside, 1]]
+    cells, _ = _cells(costs, path[np.hypot(*(path - path[0]).T) > UNDERFOOT] if len(path) else path)
+    values = costs.values[cells[:, 0], cells[:, 1]]
     return not ((values >= INSCRIBED) & (values < NO_INFORMATION)).any()
+
+
+def _cells(costs: Costmap, path: Floats) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """Rows and columns (k, 2) of the points of a path (n, 2) [m] that lie on the costmap, and which ones do (n,)."""
+    cells = np.floor((path[:, ::-1] - np.array(costs.origin)[::-1]) / costs.resolution).astype(np.int64)
+    inside = ((cells >= 0) & (cells < costs.values.shape)).all(axis=1)
+    return cells[inside], inside
 
 
 def _towards(costs: Costmap, pose: Pose2, goal: NavigationGoal) -> Cell:

@@ -35,7 +35,7 @@ def _fill(table: Table, reverses: bool) -> None:
 
 @lru_cache(maxsize=2)
 def curve_table(reverses: bool) -> Table:
-    """(x, y, heading) lengths over the radius to the origin: x from -SPAN to SPAN, y from 0 to SPAN (what lies to the right is mirrored)."""
+    """(x, y, heading) lengths over the radius to the origin: x from -SPAN to SPAN, y from 0 to SPAN (the right is mirrored)."""
     half = SPAN * PER_RADIUS
     table = np.empty((2 * half + 1, half + 1, HEADINGS), dtype=np.float32)
     _fill(table, reverses)

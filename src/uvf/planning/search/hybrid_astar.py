@@ -32,6 +32,7 @@ LAST_NUMBER = 2**31 - 2 * MOST_EXPANDED * 6
 MOST_CRAMPED = 5_000
 """The same where there is hardly any room to come to the goal."""
 
+TOUCHES = "the vehicle's outline touches an obstacle at the {}"
 NO_WAY = "no way leads to the goal: the vehicle does not fit through, or finds no room to turn"
 CRAMPED = "no way leads to the goal: driving forwards, the vehicle has no room to come to it in that heading"
 GIVEN_UP = f"no way was found with {MOST_EXPANDED} nodes; one may exist"
@@ -39,7 +40,7 @@ GIVEN_UP = f"no way was found with {MOST_EXPANDED} nodes; one may exist"
 
 @dataclass(frozen=True)
 class HybridPlan:
-    """An answer: ``path`` (n, 3) x, y [m, map frame], yaw [rad], and ``direction`` (n,) of travel, 1 or -1, with which each pose is reached;
+    """An answer: ``path`` (n, 3) x, y [m, map frame], yaw [rad], and ``direction`` (n,) of travel, 1 or -1, to each pose;
     or None and the ``reason``. ``cost`` [m] with penalties; ``expanded`` nodes."""
 
     path: Floats | None
@@ -158,5 +159,5 @@ def fault(check: PoseCheck, what: str, at: Triple, margin: float) -> str:
     if check.factors[check.values[int(at[1]), int(at[0])]] < 0.0:
         return f"the {what} lies in an obstacle or too near to one"
     if price_at(check, *at, margin) < 0.0:
-        return f"the vehicle's outline touches an obstacle at the {what}"
+        return TOUCHES.format(what)
     return ""

@@ -65,7 +65,7 @@ def curve_cost(check: PoseCheck, ask: Question, here: Triple, segments: Floats) 
         length, curvature = segments[k, 0], segments[k, 1]
         if length == 0.0:
             continue
-        n = int(ceil(abs(length) / SPACING))
+        n = ceil(abs(length) / SPACING)
         summed = 0.0
         for i in range(1, n + 1):
             x, y, yaw = moved(here[0], here[1], here[2], curvature, length * i / n)
@@ -109,15 +109,16 @@ def _priced(know: Knowledge, ask: Question, here: Triple, move: int) -> float:
         if price < 0.0:
             return -1.0
         total += price
-    return total / n
+    mean: float = total / n
+    return mean
 
 
 @compiled
 def search(
     know: Knowledge, ask: Question, nodes: Nodes, heaps: tuple[Heap, Heap], slots: tuple[Slots, int]
 ) -> tuple[int, float, bool, int, int, Nodes, Heap, Heap]:
-    """The node at which the best way leaves the tree (-1: none), its cost [cells], whether a curve leads on from there to the goal, how many
-    nodes were made and expanded, the pool and both heaps.
+    """The node at which the best way leaves the tree (-1: none), its cost [cells], whether a curve leads on from there to the goal, how
+    many nodes were made and expanded, the pool and both heaps.
 
     heaps: open list and that of the field; slots: table of states, and the number that this query's first node has in it.
     """

@@ -20,7 +20,7 @@ ROOM = 16_384  # nodes at first
 
 
 class Nodes(NamedTuple):
-    """``poses`` (n, 4) x, y [cells], yaw [rad], cost from the start [cells]; ``links`` (n, 4) parent, state, move that led there, closed."""
+    """``poses`` (n, 4) x, y [cells], yaw [rad], cost from the start [cells]; ``links`` (n, 4) parent, state, the move there, closed."""
 
     poses: Floats
     links: Ints

@@ -46,8 +46,9 @@ class Vehicle:
 
 
 class Moves(NamedTuple):
-    """The primitives: ``curvature`` (p,) [1/cell], ``length`` signed (p,) [cells], ``turn`` (p,) [bins], ``price`` (p,) factor on the length,
-    ``shape`` (64, p, n, 3) where the poses lie from the start: dx, dy [cells] and the yaw itself [rad], the last pose being the end."""
+    """The primitives: ``curvature`` (p,) [1/cell], ``length`` signed (p,) [cells], ``turn`` (p,) [bins], ``price`` (p,) factor on the
+    length, ``shape`` (64, p, n, 3) where the poses lie from the start: dx, dy [cells] and the yaw itself [rad], the last pose being
+    the end."""
 
     curvature: Floats
     length: Floats

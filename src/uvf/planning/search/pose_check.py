@@ -23,8 +23,8 @@ OFF_CENTRE = sqrt(0.5)  # cells, from a cell's centre to its farthest point
 
 
 class PoseCheck(NamedTuple):
-    """``values`` (rows, columns) and their ``factors`` (256,); ``near`` (rows, columns) bits of headings in which an obstacle may be touched
-    from somewhere in the cell; ``sides`` (n, 3) of the outline, normal and distance [cells]; ``reach`` [cells] of the outline."""
+    """``values`` (rows, columns) and their ``factors`` (256,); ``near`` (rows, columns) bits of headings in which an obstacle may be
+    touched from somewhere in the cell; ``sides`` (n, 3) of the outline, normal and distance [cells]; ``reach`` [cells] of the outline."""
 
     values: Bytes
     factors: Floats

@@ -1,0 +1,50 @@
+"""What planner and tracker say to each other, as messages and as the library has it."""
+
+from schemas.messages import NavDirective, NavReport
+from uvf.planning.local.controller import Drive
+from uvf.planning.navigation.directive import Action, Directive, Report
+from uvf.runtime.messages.convert import stamp
+
+ACTIONS = {
+    Action.STOP: NavDirective.STOP,
+    Action.FOLLOW: NavDirective.FOLLOW,
+    Action.SPIN: NavDirective.SPIN,
+    Action.BACK_UP: NavDirective.BACK_UP,
+}
+DRIVES = {
+    Drive.DRIVING: NavReport.DRIVING,
+    Drive.NO_PATH: NavReport.NO_PATH,
+    Drive.NO_VALID_CONTROL: NavReport.NO_VALID_CONTROL,
+    Drive.STOPPED: NavReport.STOPPED,
+    Drive.ARRIVED: NavReport.ARRIVED,
+}
+_ACTIONS_SAID = {said: action for action, said in ACTIONS.items()}
+_DRIVES_SAID = {said: drive for drive, said in DRIVES.items()}
+NOTHING_DONE = Report(-1)
+
+
+def directive_message(t: float, directive: Directive) -> NavDirective:
+    """At ``t`` [s]; the path goes its own way."""
+    message = NavDirective(timestamp=stamp(t), number=directive.number, action=ACTIONS[directive.action], amount=directive.amount)
+    if directive.clear_beyond is not None:
+        message.clear_beyond = directive.clear_beyond
+    return message
+
+
+def directive_of(message: NavDirective) -> Directive:
+    """Without a path; an action that is not known means to stop."""
+    clear_beyond = message.clear_beyond if message.HasField("clear_beyond") else None
+    return Directive(message.number, _ACTIONS_SAID.get(message.action, Action.STOP), amount=message.amount, clear_beyond=clear_beyond)
+
+
+def report_message(t: float, report: Report) -> NavReport:
+    """At ``t`` [s]."""
+    number = max(report.number, 0)
+    return NavReport(timestamp=stamp(t), number=number, drive=DRIVES[report.how], done=report.done, impossible=report.impossible)
+
+
+def report_of(message: NavReport | None) -> Report:
+    """Of a tracker that says nothing: that nothing is done."""
+    if message is None:
+        return NOTHING_DONE
+    return Report(message.number, _DRIVES_SAID.get(message.drive, Drive.NO_PATH), message.done, message.impossible)

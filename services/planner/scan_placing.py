@@ -1,0 +1,80 @@
+"""Where the beams of a lidar end about the vehicle, each seen from where the vehicle was when it was measured."""
+
+from dataclasses import dataclass
+from math import hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.messages import LaserScan
+from uvf.maths.se2 import Pose2, PoseHistory, inverse, transform
+from uvf.maths.se3 import Transform, from_above
+from uvf.runtime.messages.convert import scan_rays, seconds
+from uvf.sensors.sweeping import Sweeping
+
+Floats = NDArray[np.float64]
+
+HISTORY = 100  # poses kept, 2 s: a sweep may take one
+MOST_BEAMS = 1440
+
+
+@dataclass(frozen=True)
+class PlacedScan:
+    """A scan at ``t`` [s], when its last beam was measured from ``pose``; what it saw, in the base frame of that pose."""
+
+    t: float
+    pose: Pose2
+    eye: tuple[float, float]
+    """(x, y) [m] of the lidar."""
+    points: Floats
+    """(n, 2) [m], ends of the beams in their order; those without return end at the farthest."""
+    ranges: Floats
+    """(n,) [m], 0 = no return."""
+
+
+class ScanPlacer:
+    """One vehicle's; poses are in one frame, whichever."""
+
+    def __init__(self, base_from_lidar: Transform, sweeping: Sweeping, farthest: float) -> None:
+        """farthest: m, at which beams without return end."""
+        self._base_from_lidar, self._sweeping, self.farthest = base_from_lidar, sweeping, farthest
+        self._history = PoseHistory(HISTORY)
+        self.t = -np.inf
+        """Time [s] of the last scan that was placed."""
+
+    @property
+    def offset(self) -> float:
+        """Distance [m] from the vehicle's centre to the lidar, in the plane."""
+        return hypot(*self._base_from_lidar.translation[:2].tolist())
+
+    def move(self, t: float, pose: Pose2) -> None:
+        """The vehicle was at ``pose`` at ``t`` [s]."""
+        self._history.add(t, pose)
+
+    def place(self, scan: LaserScan) -> PlacedScan | None:
+        """The scan, if it is newer than the last one and the poses reach to its end."""
+        taken_at = self._sweeping.end(seconds(scan.timestamp))
+        pose = self._history.at(taken_at)
+        if taken_at <= self.t or pose is None:
+            return None
+        ranges, rays = scan_rays(scan)
+        ends = np.where(ranges > 0.0, ranges, self.farthest)[:, None] * rays
+        base_from_frame, points = inverse(pose), np.empty_like(ends)
+        for at, beams in self._sweeping.parts(len(ranges), seconds(scan.timestamp)):
+            if (frame_from_base := self._history.at(at)) is None:
+                return None
+            seen = transform(frame_from_base, from_above(self._base_from_lidar, ends[beams]))
+            points[beams] = transform(base_from_frame, seen)
+        self.t = taken_at
+        x, y, _ = self._base_from_lidar.translation.tolist()
+        return PlacedScan(taken_at, pose, (x, y), *_thinned(points, ranges))
+
+
+def _thinned(points: Floats, ranges: Floats) -> tuple[Floats, Floats]:
+    """Of more beams than are needed, the nearest return of each few neighbours."""
+    few = -(-len(ranges) // MOST_BEAMS)
+    if few <= 1:
+        return points, ranges
+    padded = np.concatenate((ranges, np.zeros(-len(ranges) % few))).reshape(-1, few)
+    nearest = np.argmin(np.where(padded > 0.0, padded, np.inf), axis=1) + np.arange(len(padded)) * few
+    return points[nearest], ranges[nearest]

@@ -1,0 +1,92 @@
+"""Routes of the global planner on a map that may be wrong, with what the sensors see now on it."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from uvf.maths.se2 import Pose2
+from uvf.planning.costmap.costmap import Frame
+from uvf.planning.costmap.inflation import FREE_SPACE, LETHAL
+from uvf.planning.costmap.obstacle_layer import ObstacleLayer
+from uvf.planning.global_planner import GlobalPlanner
+from uvf.planning.navigation.navigator import NavigationGoal, Route
+from uvf.planning.navigation.routes import KnownFree, still_free
+
+Floats = NDArray[np.float64]
+Cells = NDArray[np.int8]
+
+OCCUPIED = 65  # per cent, from which on a cell of the map is an obstacle
+WALL = np.ones((3, 3), dtype=np.bool_)
+
+
+class GlobalRoutes:
+    """Plans on an occupancy grid with the obstacles of a layer on it, whose poses are in the map's frame.
+
+    allow_unknown: as in ``GlobalPlanner.plan``. After ``reset`` what the sensors see free counts more than what the map shows: a map
+    that was drawn with something in the way does not shut it for ever.
+    """
+
+    def __init__(self, planner: GlobalPlanner, layer: ObstacleLayer) -> None:
+        self.allow_unknown = False
+        self._planner, self._layer = planner, layer
+        self._map: tuple[Cells, Frame] | None = None
+        self._walls: NDArray[np.bool_] = np.zeros((0, 0), dtype=np.bool_)
+        self._trusts_sight = False
+        self._known_free = KnownFree()
+        self._shown: bytes | None = None
+
+    def take(self, cells: Cells, frame: Frame) -> None:
+        """A new map, (rows, columns) of -1 unknown, 0..100 per cent; frame: resolution [m] and origin [m]."""
+        self._map, self._shown = (cells, frame), None
+        self._walls = ndimage.binary_dilation(cells >= OCCUPIED, WALL)
+
+    def look(self, here: tuple[float, float]) -> bool:
+        """Gives the planner the map with what is seen from ``here`` [m]; whether that is another one than before."""
+        if self._map is None:
+            return False
+        cells, (resolution, origin) = self._map
+        lethal = self._on_map(self._layer.cells == LETHAL)
+        lethal = lethal[~self._walls[lethal[:, 0], lethal[:, 1]]]  # a wall of the map is where the map has it
+        free = self._on_map(self._layer.cells == FREE_SPACE) if self._trusts_sight else lethal[:0]
+        shown = lethal.tobytes() + free.tobytes()
+        changed = shown != self._shown
+        if changed:
+            self._shown, cells = shown, cells.copy()
+            cells[free[:, 0], free[:, 1]] = 0
+            cells[lethal[:, 0], lethal[:, 1]] = 100
+            self._planner.see(cells, (resolution, origin))
+        return self._planner.stand(here) | changed
+
+    def plan(self, pose: Pose2, goal: NavigationGoal) -> Route:
+        """The best path to the goal."""
+        self.look((pose[0], pose[1]))
+        planned = self._planner.plan((pose[0], pose[1]), (goal.x, goal.y), self.allow_unknown)
+        route = Route(planned.path, planned.failure, planned.reason)
+        return route if self._planner.costs is None else self._known_free.judged(route, self._planner.costs)
+
+    def is_free(self, path: Floats) -> bool:
+        """Whether the vehicle's centre may still be everywhere on the path."""
+        body, costs = self._planner.body, self._planner.costs
+        return still_free(self._layer.costmap(body.footprint, body.inflation), path) and (costs is None or still_free(costs, path))
+
+    def has_room_to_turn(self, pose: Pose2) -> bool:
+        """Whether no known obstacle is in the way of turning on the spot."""
+        return self._layer.has_room((pose[0], pose[1]), self._planner.body.footprint.circumscribed_radius)
+
+    def reset(self) -> None:
+        """From now on what is seen free is free."""
+        self._trusts_sight = True
+
+    def _on_map(self, mask: NDArray[np.bool_]) -> NDArray[np.int64]:
+        """(n, 2) rows and columns of the map on which the layer's cells of a mask lie."""
+        layer, resolution = self._layer, self._planner_frame[0]
+        x0, y0 = self._planner_frame[1]
+        at = np.argwhere(mask)
+        rows = np.floor(((at[:, 0] + 0.5) * layer.resolution + layer.origin[1] - y0) / resolution).astype(np.int64)
+        columns = np.floor(((at[:, 1] + 0.5) * layer.resolution + layer.origin[0] - x0) / resolution).astype(np.int64)
+        inside = (rows >= 0) & (columns >= 0) & (rows < self._walls.shape[0]) & (columns < self._walls.shape[1])
+        return np.column_stack((rows[inside], columns[inside]))
+
+    @property
+    def _planner_frame(self) -> Frame:
+        return self._map[1] if self._map is not None else (1.0, (0.0, 0.0))
