@@ -32,9 +32,9 @@ STACK_LIMITS = Limits(
     min_speed=-0.5, max_speed=1.4, max_turn_rate=2.0, acceleration=2.5, angular_acceleration=6.0, lateral_acceleration=1.5
 )
 EVASION_LIMITS = Limits(
-    min_speed=-2.0, max_speed=2.0, max_turn_rate=2.0, acceleration=4.0, angular_acceleration=8.0, lateral_acceleration=2.0
+    min_speed=-2.0, max_speed=2.0, max_turn_rate=3.0, acceleration=4.0, angular_acceleration=10.0, lateral_acceleration=3.5
 )
-"""What the Jackal can do without sliding aside: at 4 m/s^2 across it slides at 0.9 m/s, which its odometry does not tell."""
+"""What the Jackal can do; at the most across it slides at 0.9 m/s, which its odometry does not tell, and evades all the better."""
 DWA_LIMITS = Limits(0.1, 0.5, 1.57, 10.0, 20.0, 10.0)
 MOVE_BASE_HALF, MOVE_BASE_PADDING = (0.21, 0.165), 0.1  # m
 """What move_base has on the Jackal: jackal_helper/configs/params of the challenge."""
