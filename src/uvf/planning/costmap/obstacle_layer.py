@@ -165,6 +165,15 @@ class ObstacleLayer:
         out: Floats = (found[:, ::-1] + 0.5) * self.resolution + np.array(self.origin)
         return out
 
+    def free_disc(self, centre: Point, radius: float) -> None:
+        """Frees the obstacle cells whose middle lies within ``radius`` [m] of ``centre`` [m]: something that moves is there now."""
+        n, reach = len(self.cells), radius / self.resolution
+        row, column = ((at - corner) / self.resolution - 0.5 for at, corner in zip(centre[::-1], self.origin[::-1], strict=True))
+        top, left = (min(max(int(np.floor(at - reach)), 0), n) for at in (row, column))
+        part = self.cells[top : max(int(row + reach) + 2, 0), left : max(int(column + reach) + 2, 0)]
+        down, across = np.ogrid[: part.shape[0], : part.shape[1]]
+        part[(np.hypot(down + top - row, across + left - column) <= reach) & (part == LETHAL)] = FREE_SPACE
+
     def has_room(self, place: Point, radius: float) -> bool:
         """Whether no obstacle lies within ``radius`` [m] of a place [m]."""
         near = self.lethal_near(place, radius)
