@@ -20,7 +20,7 @@ WALLS = [(0.0, 8.0), (np.pi / 2, 6.0), (np.pi, 7.0), (-np.pi / 2, 6.0)]
 
 def watching(discs_at, seconds):
     """A controller that stands and has seen discs move for some time."""
-    controller = LocalController(BODY, LIMITS, Mppi(LIMITS, BODY, MppiSettings(), 1), ControllerSettings(size=12.0, evasion=FAST))
+    controller = LocalController(BODY, LIMITS, Mppi(LIMITS, BODY, MppiSettings(), 1), ControllerSettings(size=18.0, evasion=FAST))
     lidar, rng = Lidar(), np.random.default_rng(0)
     for k in range(round(seconds / DT) + 1):
         ranges = lidar.ranges(np.zeros(3), discs_at(k * DT), WALLS, rng)
@@ -71,10 +71,9 @@ def test_a_disc_is_freed_cell_by_cell(centre):
 
 def test_who_holds_stands_until_something_comes_at_it():
     calm = watching(lambda t: np.zeros((0, 3)), 0.2)
-    assert calm.hold(HERE, (0.0, 0.0)).speed == 0.0
+    assert calm.hold(HERE, (0.0, 0.0)) == (0.0, 0.0)
     threatened = watching(lambda t: np.array(((4.5 - 1.5 * t, 0.1, 0.4),)), 1.0)
     velocity = (0.0, 0.0)
     for _ in range(8):
-        result = threatened.hold(HERE, velocity)
-        velocity = (result.speed, result.turn_rate)
+        velocity = threatened.hold(HERE, velocity)
     assert abs(velocity[0]) > 0.2

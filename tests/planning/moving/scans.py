@@ -60,7 +60,7 @@ def follow(discs_at, seconds, *, lidar=None, walls=(), pose_at=lambda t: (0.0, 0
         points = lidar.points(pose, ranges)
         eye = pose[0], pose[1]
         layer.recentre(eye)
-        mask = tracker.observe(t, points, ranges, SeenFrom(eye, layer.lately_free(t, points)))
+        mask = tracker.observe(t, points, ranges, SeenFrom(eye, layer.lately_free(t, eye, points)))
         layer.observe(BeamObservation(t, t, eye, points, (ranges > 0.0) & ~mask))
         yield t, tracker, mask, ranges, points
 

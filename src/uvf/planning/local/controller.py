@@ -103,7 +103,7 @@ class LocalController:
         ends = transform(pose, points)
         (x, y), *_ = transform(pose, np.array((eye,))).tolist()
         self.layer.recentre((pose[0], pose[1]))
-        moves = self.moving.observe(t, ends, ranges, SeenFrom((x, y), self.layer.lately_free(t, ends)))
+        moves = self.moving.observe(t, ends, ranges, SeenFrom((x, y), self.layer.lately_free(t, (x, y), ends)))
         hits = (ranges > 0.0) & (ranges <= self.settings.obstacle_range) & ~moves
         far = np.maximum(ranges, 1e-9) > self.settings.obstacle_range
         if far.any():

@@ -15,8 +15,8 @@ Point = tuple[float, float]
 NEVER = 1e6
 FIRST_SPEED = 2.0  # m/s, 1 sigma of what is seen for the first time
 FRESH = 0.3  # weight of the last scan
-SURE = 0.5
-PART = 0.3  # of a thing's points
+SURE = 0.7
+PART = 0.4  # of a thing's points
 BESIDE = 0.15
 """m beyond the radius of a thing that moves, within which what is seen is part of it."""
 
@@ -61,7 +61,6 @@ class Track:
     """How often nothing covered a part of it; the visible part of a wall between two other things wanders along with the vehicle."""
     entered: float = 0.0
     """Share [0..1] of the last scans in which it stood on ground that had been free."""
-    has_left: bool = False  # beams pass where it was first seen
     hits: int = 1
     unseen: float = 0.0  # s, in view without being seen
     hidden: float = 0.0  # s, out of view
@@ -76,7 +75,7 @@ class Track:
         speed = float(np.hypot(self.state[2], self.state[3]))
         if self.whole < settings.least_hits or speed < settings.least_speed:
             self.moves = False
-        elif not self.moves and (self.has_left or self.entered >= SURE):
+        elif not self.moves and self.entered >= SURE:
             along = self.state[2:] / speed
             deviation = float(np.sqrt(along @ self.covariance[2:, 2:] @ along))
             gone = float(np.hypot(*(self.state[:2] - self.born)))
@@ -121,8 +120,6 @@ class MovingObjects:
                 continue
             self._correct(track, disc)
             track.entered += FRESH * (float(entered[int(disc[LABEL])] >= PART) - track.entered)
-            if not track.has_left and float(np.hypot(*(track.state[:2] - track.born))) > track.radius:
-                track.has_left = _passes(track.born, track.radius, eye, points, seen)
             if track.moves or not disc[HIDDEN]:
                 track.judge(self.settings)
             moving[int(disc[LABEL])] = track.moves
