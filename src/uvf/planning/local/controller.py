@@ -15,7 +15,7 @@ from uvf.planning.costmap.inflation import Inflation, cost_factors
 from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
 from uvf.planning.costmap.own_ground import LEAVING, with_way_out
 from uvf.planning.local.goal_checker import GoalChecker, GoalTolerances, turn_to_heading
-from uvf.planning.local.planner import STOP, Limits, LocalPlanner, Situation, State, within
+from uvf.planning.local.planner import STOP, Limits, LocalPlanner, LocalSituation, State, within
 from uvf.planning.local.swept_stop import safe_share
 from uvf.planning.local.window import WindowSettings, local_window
 from uvf.planning.moving.tracks import MovingObjects, SeenFrom
@@ -147,7 +147,7 @@ class LocalController:
             return self._at_goal(state, velocity, heading)
         costs = self.leaving(self.costmap(settings.window.size + 1.0), pose)
         grids = local_window(costs, (pose[0], pose[1]), path, self._factors, settings.window)
-        wanted = self.planner.command(Situation(state, grids, path, self.moving.moving()))
+        wanted = self.planner.command(LocalSituation(state, grids, path, self.moving.moving()))
         if wanted is None:
             return DriveResult(*self._reach(state, velocity, STOP), Drive.NO_VALID_CONTROL)
         stopped = self._reach(state, velocity, wanted) == STOP and wanted != STOP

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local import rollout
-from uvf.planning.local.planner import Limits, Situation, State
+from uvf.planning.local.planner import Limits, LocalSituation, State
 from uvf.planning.local.rollout import FEATURES, Others, roll_out
 from uvf.planning.local.window import UNREACHED
 
@@ -44,7 +44,7 @@ class Dwa:
     def reset(self) -> None:
         """Nothing is remembered from one cycle to the next."""
 
-    def command(self, now: Situation) -> tuple[float, float] | None:
+    def command(self, now: LocalSituation) -> tuple[float, float] | None:
         """Velocity (m/s, rad/s) for now; None where every arc touches something or leads nowhere."""
         s, state = self.settings, now.state
         pairs = self._window(state)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from uvf.maths.compiled import compiled
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local import rollout
-from uvf.planning.local.planner import Limits, Situation
+from uvf.planning.local.planner import Limits, LocalSituation
 from uvf.planning.local.rollout import FEATURES, Others, roll_out
 
 Floats = NDArray[np.float64]
@@ -75,7 +75,7 @@ class Mppi:
         """Forgets the last plan."""
         self._plan[:] = 0.0
 
-    def command(self, now: Situation) -> tuple[float, float] | None:
+    def command(self, now: LocalSituation) -> tuple[float, float] | None:
         """Velocity (m/s, rad/s) for now; None where every future ends in a contact at once."""
         settings, grids, start = self.settings, now.grids, now.state
         others = Others(now.obstacles, *self._outline, settings.heed, settings.growth, settings.doubt)

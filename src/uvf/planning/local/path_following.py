@@ -9,7 +9,7 @@ from uvf.maths.compiled import compiled
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import LETHAL
 from uvf.planning.local import rollout
-from uvf.planning.local.planner import Limits, Situation
+from uvf.planning.local.planner import Limits, LocalSituation
 from uvf.planning.local.rollout import FEATURES, Others, roll_out
 from uvf.planning.local.window import Grids
 
@@ -94,7 +94,7 @@ class LookAhead:
         self._limits, self._outline = limits, (footprint.sides(), footprint.circumscribed_radius)
         self._found = np.empty((1, FEATURES), dtype=np.float32)
 
-    def collides(self, now: Situation, command: tuple[float, float], seconds: float) -> bool:
+    def collides(self, now: LocalSituation, command: tuple[float, float], seconds: float) -> bool:
         """Whether the vehicle touches something within ``seconds`` if it follows ``command`` ([m/s], [rad/s]) as fast as it can.
 
         A vehicle that touches something from the start may get out of it.

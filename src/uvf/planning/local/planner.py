@@ -36,7 +36,7 @@ class State(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Situation:
+class LocalSituation:
     """All that a local planner decides by; one frame for all."""
 
     state: State
@@ -50,7 +50,7 @@ class Situation:
 class LocalPlanner(Protocol):
     """Chooses velocities at a fixed rate."""
 
-    def command(self, now: Situation) -> tuple[float, float] | None:
+    def command(self, now: LocalSituation) -> tuple[float, float] | None:
         """Velocity (m/s, rad/s); None where nothing that it knows of is free of contacts."""
         ...
 

@@ -6,7 +6,7 @@ from math import atan2, hypot, pi, sin, sqrt
 from uvf.maths.rotations import wrap
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local.path_following import LookAhead, carrot, distance_to_obstacle, turn_rate_over
-from uvf.planning.local.planner import STOP, Limits, Situation
+from uvf.planning.local.planner import STOP, Limits, LocalSituation
 
 Target = tuple[float, float, float]
 
@@ -52,7 +52,7 @@ class RegulatedPurePursuit:
         """Forgets that it was turning on the spot."""
         self._turning = False
 
-    def command(self, now: Situation) -> tuple[float, float] | None:
+    def command(self, now: LocalSituation) -> tuple[float, float] | None:
         """Velocity (m/s, rad/s) for now; None where the arc to the carrot touches something, at low speed and with a near carrot too."""
         s, state = self.settings, now.state
         room = max(distance_to_obstacle(now.grids, state.x, state.y, s.cost_scaling_dist + self._inscribed) - self._inscribed, 0.0)
@@ -80,7 +80,7 @@ class RegulatedPurePursuit:
         far = min(max(s.lookahead_time * speed, s.min_lookahead_dist), s.max_lookahead_dist)
         return min(far, s.min_lookahead_dist + s.lookahead_room_gain * room) if room < s.cost_scaling_dist else far
 
-    def _target(self, now: Situation, reach: float) -> Target:
+    def _target(self, now: LocalSituation, reach: float) -> Target:
         """Bearing [rad] and distance [m] of the carrot, and way [m] left to the path's end."""
         state = now.state
         x, y, left = carrot(now.path, state.x, state.y, reach)

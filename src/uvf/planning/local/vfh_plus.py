@@ -11,7 +11,7 @@ from uvf.maths.rotations import wrap
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import LETHAL
 from uvf.planning.local.path_following import TURN_GAIN, LookAhead, carrot, turn_rate_over
-from uvf.planning.local.planner import STOP, Limits, Situation, State
+from uvf.planning.local.planner import STOP, Limits, LocalSituation, State
 from uvf.planning.local.window import Grids
 
 Floats = NDArray[np.float64]
@@ -56,7 +56,7 @@ class VfhPlus:
         self._shut[:] = False
         self._chosen = None
 
-    def command(self, now: Situation) -> tuple[float, float] | None:
+    def command(self, now: LocalSituation) -> tuple[float, float] | None:
         """Velocity (m/s, rad/s) for now; None where all directions are shut, or the ways into the open ones touch something."""
         s, state = self.settings, now.state
         x, y, left = carrot(now.path, state.x, state.y, s.target_distance)
@@ -114,7 +114,7 @@ class VfhPlus:
         inside = (target - right - half) % tau <= left - right - 2.0 * half
         return [right + half, left - half] + ([target] if inside else [])
 
-    def _steered(self, now: Situation, direction: float, ahead: float) -> tuple[float, float] | None:
+    def _steered(self, now: LocalSituation, direction: float, ahead: float) -> tuple[float, float] | None:
         """Velocity towards a direction with ``ahead`` [m] to go; None where its arc touches something."""
         s, limits, state = self.settings, self._limits, now.state
         error = wrap(direction - state.yaw)

@@ -14,7 +14,7 @@ from uvf.planning.search.goal_field import begin, coarse_index, goal_field
 from uvf.planning.search.goal_room import ENOUGH, states_before
 from uvf.planning.search.hybrid_expansion import Knowledge, Question, curve_to_goal, search, way_to
 from uvf.planning.search.hybrid_nodes import MOVE, make_nodes
-from uvf.planning.search.motion_primitives import SPACING, Moves, Vehicle, motion_primitives, shapes
+from uvf.planning.search.motion_primitives import SPACING, Moves, VehicleMotion, motion_primitives, shapes
 from uvf.planning.search.open_list import make_heap
 from uvf.planning.search.pose_check import HALF_CELL, PoseCheck, pose_check, price_at
 
@@ -56,7 +56,7 @@ class HybridAStar:
     factors: (256,) cost factor [-] of each value, 1 or more, negative = impassable.
     """
 
-    def __init__(self, costs: Costmap, factors: Floats, vehicle: Vehicle) -> None:
+    def __init__(self, costs: Costmap, factors: Floats, vehicle: VehicleMotion) -> None:
         if factors.shape != (256,) or not np.isfinite(factors).all() or ((factors >= 0.0) & (factors < 1.0)).any():
             raise ValueError("factors: 256 finite numbers are needed, each 1 or more, or negative for an impassable value")
         if costs.values.size * HEADINGS >= 2**31:

@@ -114,6 +114,37 @@ def _priced(know: Knowledge, ask: Question, here: Triple, move: int) -> float:
 
 
 @compiled
+def _way_by(know: Knowledge, ask: Question, at: tuple[Triple, float], moves: tuple[int, int]) -> float:
+    """Cost [cells] of the way on by a primitive from a pose that has its cost, after the primitive before (-1: none); inf where blocked."""
+    (here, cost), (move, before), made = at, moves, know.moves
+    price = _priced(know, ask, here, move)
+    if price < 0.0:
+        return inf
+    factor = made.price[move]
+    if before >= 0 and made.curvature[move] * made.curvature[before] < 0.0:
+        factor += ask.penalties[1]
+    way: float = cost + abs(made.length[move]) * price * factor
+    return way
+
+
+@compiled
+def _end_of(know: Knowledge, here: Triple, move: int) -> tuple[Triple, int]:
+    """Pose [cells, rad] to which a primitive leads, and its state; -1 outside of the map."""
+    shape, (rows, columns) = know.moves.shape, know.check.values.shape
+    k, last = heading_bin(here[2]), know.moves.shape.shape[2] - 1
+    x, y = here[0] + shape[k, move, last, 0], here[1] + shape[k, move, last, 1]
+    state = (int(y) * columns + int(x)) * HEADINGS + ((k + know.moves.turn[move]) & (HEADINGS - 1))
+    return (x, y, shape[k, move, last, 2]), state if 0.0 <= x < columns and 0.0 <= y < rows else -1
+
+
+@compiled
+def _state_of(know: Knowledge, at: Triple) -> int:
+    """Number of the cell and heading bin of a pose on the map."""
+    state: int = (int(at[1]) * know.check.values.shape[1] + int(at[0])) * HEADINGS + heading_bin(at[2])
+    return state
+
+
+@compiled
 def search(
     know: Knowledge, ask: Question, nodes: Nodes, heaps: tuple[Heap, Heap], slots: tuple[Slots, int]
 ) -> tuple[int, float, bool, int, int, Nodes, Heap, Heap]:
@@ -123,11 +154,8 @@ def search(
     heaps: open list and that of the field; slots: table of states, and the number that this query's first node has in it.
     """
     (heap, fringe), (slot, base), moves = heaps, slots, know.moves
-    columns, last, p = know.check.values.shape[1], know.moves.shape.shape[2] - 1, know.moves.length.size
-    curve = np.zeros((MOST, 2))
-    change, goal = ask.penalties[1], ask.goal
-    at_goal = (int(goal[1]) * columns + int(goal[0])) * HEADINGS + heading_bin(goal[2])
-    state = (int(ask.start[1]) * columns + int(ask.start[0])) * HEADINGS + heading_bin(ask.start[2])
+    p, curve = moves.length.size, np.zeros((MOST, 2))
+    at_goal, state = _state_of(know, ask.goal), _state_of(know, ask.start)
     put(nodes, 0, (ask.start[0], ask.start[1], ask.start[2], 0.0), (-1, state, -1))
     slot[state] = base
     key, fringe = _estimate(know, ask, fringe, ask.start)
@@ -141,11 +169,8 @@ def search(
             continue
         nodes.links[top, CLOSED] = 1
         expanded += 1
-        here, cost, before = (
-            (nodes.poses[top, X], nodes.poses[top, Y], nodes.poses[top, YAW]),
-            nodes.poses[top, COST],
-            nodes.links[top, MOVE],
-        )
+        here = (nodes.poses[top, X], nodes.poses[top, Y], nodes.poses[top, YAW])
+        cost, before = nodes.poses[top, COST], nodes.links[top, MOVE]
         wait -= 1
         if wait <= 0:
             wait = int((key - cost) / EXPANSION_RATIO)
@@ -157,35 +182,24 @@ def search(
         if nodes.links[top, STATE] == at_goal and cost < best:
             best, best_node, by_curve = cost, top, False
         heap, nodes = with_room(heap, size, p), with_nodes(nodes, count, p)
-        k = heading_bin(here[2])
         for move in range(p):
-            x, y = here[0] + moves.shape[k, move, last, 0], here[1] + moves.shape[k, move, last, 1]
-            if not (0.0 <= x < columns and 0.0 <= y < know.check.values.shape[0]):
+            to, state = _end_of(know, here, move)
+            if state < 0:
                 continue
-            state = (int(y) * columns + int(x)) * HEADINGS + ((k + moves.turn[move]) & (HEADINGS - 1))
-            known = slot[state] - base
-            if known >= 0 and (
-                nodes.links[known, CLOSED] == 1 or nodes.poses[known, COST] <= cost + abs(moves.length[move]) * moves.price[move]
-            ):
+            known, least = slot[state] - base, cost + abs(moves.length[move]) * moves.price[move]
+            if known >= 0 and (nodes.links[known, CLOSED] == 1 or nodes.poses[known, COST] <= least):
                 continue
-            price = _priced(know, ask, here, move)
-            if price < 0.0:
+            way = _way_by(know, ask, (here, cost), (move, before))
+            if way >= best or (known >= 0 and nodes.poses[known, COST] <= way):
                 continue
-            factor = moves.price[move]
-            if before >= 0 and moves.curvature[move] * moves.curvature[before] < 0.0:
-                factor += change
-            way = cost + abs(moves.length[move]) * price * factor
-            if known >= 0 and nodes.poses[known, COST] <= way:
-                continue
-            yaw = moves.shape[k, move, last, 2]
-            left, fringe = _estimate(know, ask, fringe, (x, y, yaw))
+            left, fringe = _estimate(know, ask, fringe, to)
             if way + left >= best:
                 continue
             if known < 0:
                 known = count
                 slot[state] = base + count
                 count += 1
-            put(nodes, known, (x, y, yaw, way), (top, state, move))
+            put(nodes, known, (to[0], to[1], to[2], way), (top, state, move))
             size = push(heap, size, way + left, known)
     return best_node, best, by_curve, count, expanded, nodes, heap, fringe
 
