@@ -190,7 +190,7 @@ class GlobalPlanner:
         """Why none was found: by where the vehicle stands, by the goal, or by what lies between."""
         if shut_in := self.shut_in(start):
             return PlannedPath(None, shut_in, Failure.START_OCCUPIED)
-        if INSCRIBED <= known.values[goal] and not known.unknown[goal]:
+        if known.values[goal] >= INSCRIBED and not known.unknown[goal]:
             return PlannedPath(None, Failure.GOAL_OCCUPIED.value, Failure.GOAL_OCCUPIED)
         return PlannedPath(None, NO_WAY, Failure.NO_VALID_PATH)
 
