@@ -91,12 +91,12 @@ def _case(name: str, make: Callable[[], CoverageField], _: Path | None) -> Figur
     return rows
 
 
-def CASES(data: Path | None) -> dict[str, Callable[[Path | None], Figures]]:
+def cases(data: Path | None) -> dict[str, Callable[[Path | None], Figures]]:
     """A case for each field of the data folder, if there is one, and for each random one."""
-    cases: dict[str, Callable[[Path | None], Figures]] = {}
+    found: dict[str, Callable[[Path | None], Figures]] = {}
     if data is not None and (data / "coverage").is_dir():
-        cases |= {f"field:{name}": partial(_case, name, partial(_same, field)) for name, field in drawn_fields(data)}
-    return cases | {f"random:{seed}": partial(_case, f"random {seed}", partial(random_field, seed)) for seed in range(RANDOM)}
+        found |= {f"field:{name}": partial(_case, name, partial(_same, field)) for name, field in drawn_fields(data)}
+    return found | {f"random:{seed}": partial(_case, f"random {seed}", partial(random_field, seed)) for seed in range(RANDOM)}
 
 
 def _same(field: CoverageField) -> CoverageField:

@@ -61,7 +61,7 @@ def compared(
     }
 
 
-def dubins_case(data: Path | None) -> Figures:
+def measure(data: Path | None) -> Figures:
     """A row for each kind of curve. Raises BadInput without the files."""
     folder = (data or Path()) / "dubins"
     figures: Figures = {}
@@ -74,6 +74,3 @@ def dubins_case(data: Path | None) -> Figures:
             raise BadInput(f"no {path}: give the folder of benchmark data with --data")
         figures[name] = compared(np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2), lengths, length, segments)
     return figures
-
-
-CASES = {"dubins": dubins_case}

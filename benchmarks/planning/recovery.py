@@ -220,7 +220,7 @@ def measure(selection: Selection, data: Path | None) -> Figures:
     rows: Figures = {}
     for name, case in cases().items():
         found = [run(case, seed + k) for k in range(trials)]
-        rows[name] = {
+        rows[f"recovery: {name}"] = {
             "right": float(np.mean([outcome.is_right(case) for outcome in found])),
             "contacts": sum(outcome.contact for outcome in found),
             "time s": float(np.mean([outcome.time for outcome in found])),

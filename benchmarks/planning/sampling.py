@@ -176,4 +176,5 @@ def _row(
     return row
 
 
-CASES = {name: partial(city, name) for name in MAPS}
+CITIES = {name: partial(city, name) for name in MAPS}
+"""The cases."""

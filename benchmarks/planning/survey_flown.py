@@ -108,12 +108,9 @@ def figures(flown: Flown) -> dict[str, float]:
     }
 
 
-def flown_case(data: Path | None) -> Figures:
+def measure(data: Path | None) -> Figures:
     """A row for each wind."""
     return {name: figures(fly(wind)) for name, wind in WINDS.items()}
-
-
-CASES = {"flown": flown_case}
 
 
 def draw(axes: Axes, name: str, flown: Flown) -> None:

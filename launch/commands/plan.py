@@ -12,11 +12,12 @@ from uvf.models.yaml_data import BadInput
 if TYPE_CHECKING:
     from uvf.planning.coverage.camera import SurveyCamera
 
-plan_app = typer.Typer(no_args_is_help=True, help="Plan missions: surveys of an area.")
+plan_app = typer.Typer(no_args_is_help=True, help="Plan missions: surveys of an area, flights past obstacles.")
 
 AREA = "Polygons (.geojson, .json, .kml, .gml, .xml), or a .yaml with outline and holes in metres."
 Share = within(0.0, 0.95)
 Positive = within(0.01, 1e6)
+Margin = within(0.0, 1e4)
 
 
 @plan_app.callback()
@@ -59,6 +60,33 @@ def survey(
             area, height, vehicle, world, wind, _camera(fov, sensor), (sidelap, frontlap), spacing, trigger, airspeed, heading, at, seed
         )
         planned = plan_survey(wishes)
+        for line in planned.lines():
+            typer.echo(f"uvf: {line}", err=True)
+        if out is None:
+            typer.echo(planned.mission_text(), nl=False)
+        else:
+            _write(out, planned.mission_text())
+
+
+@plan_app.command()
+def flight(
+    file: Annotated[Path, typer.Argument(help="A .yaml with start, goal, fence and obstacles in metres.")],
+    vehicle: Annotated[str, typer.Option("--vehicle", "-v", help="An aircraft, name in vehicles/ or path of its folder.")] = "milvus",
+    world: Annotated[str, typer.Option(help="Name in worlds/; what stands in it is kept clear of, too.")] = "empty",
+    aside: Annotated[float, typer.Option(metavar="m", callback=Margin, help="Kept from obstacles and from the fence's edges.")] = 20.0,
+    above: Annotated[float, typer.Option(metavar="m", callback=Margin, help="Kept from heights, above and below.")] = 10.0,
+    wind: Annotated[tuple[float, float], typer.Option(metavar="EAST NORTH", help="Wind expected [m/s], where it blows to.")] = (0.0, 0.0),
+    airspeed: Annotated[float | None, typer.Option(metavar="m/s", callback=Positive, help="By default the vehicle's cruise.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of the search and of the mission.")] = 1,
+    out: Annotated[Path | None, typer.Option(help="Mission file to write; by default it is printed.")] = None,
+) -> None:
+    """Fly from a start to a goal past obstacles and within a fence, by RRT* with climbing Dubins paths, as a mission file."""
+    from launch.planning.flight import FlightWishes, plan_flight
+
+    with bad_input_is_one_line():
+        if not all(math.isfinite(value) for value in wind):
+            raise BadInput("--wind takes finite numbers")
+        planned = plan_flight(FlightWishes(file, vehicle, world, wind, airspeed, aside, above, seed))
         for line in planned.lines():
             typer.echo(f"uvf: {line}", err=True)
         if out is None:

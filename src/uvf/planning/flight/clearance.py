@@ -96,3 +96,12 @@ def is_clear_way(space: Space, margins: ClearanceMargins, start: Configuration, 
         x, y, course = here
         height += slope * length
     return room(space, margins, (x, y, height), slope) >= 0.0
+
+
+@compiled
+def are_clear(space: Space, margins: ClearanceMargins, places: Floats) -> bool:
+    """Whether an aircraft is clear at every one of places (n, 3): x, y, height [m]."""
+    i, n = 0, places.shape[0]
+    while i < n and room(space, margins, (places[i, 0], places[i, 1], places[i, 2]), 1.0) >= 0.0:
+        i += 1
+    return bool(i == n)

@@ -10,7 +10,7 @@ from uvf.maths.compiled import compiled
 from uvf.maths.curves.segments import Triple, end_of
 from uvf.planning.sampling.clearance import free_length
 from uvf.planning.sampling.growing import NOTHING, WORTH, GrowthBuffers, closest, draw, extend
-from uvf.planning.sampling.problem import Problem
+from uvf.planning.sampling.problem import SamplingProblem
 from uvf.planning.sampling.spaces import connect, cut, leaving, turned
 from uvf.planning.sampling.tree import CurveTree, add, is_full, node
 
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 
 @compiled
-def _reach(problem: Problem, tree: CurveTree, target: Triple, facing: float, buffers: GrowthBuffers) -> int:
+def _reach(problem: SamplingProblem, tree: CurveTree, target: Triple, facing: float, buffers: GrowthBuffers) -> int:
     """Leads from the tree as far towards ``target`` as is free, a node each step; the node at the target, or -1."""
     count = closest(problem, tree, target, buffers)
     i = int(buffers.near.ids[np.argmin(buffers.costs[:count])])
@@ -43,7 +43,7 @@ def _reach(problem: Problem, tree: CurveTree, target: Triple, facing: float, buf
 
 @compiled
 def grow_rrt_connect(
-    problem: Problem, trees: tuple[CurveTree, CurveTree], draws: Floats, buffers: GrowthBuffers, turn: int
+    problem: SamplingProblem, trees: tuple[CurveTree, CurveTree], draws: Floats, buffers: GrowthBuffers, turn: int
 ) -> tuple[int, tuple[int, int]]:
     """Grows both trees, each in its turn, until they meet or one is full: iterations done, and the nodes (-1: none) where they met.
 

@@ -10,7 +10,7 @@ from uvf.maths.compiled import compiled
 from uvf.maths.curves.segments import MOST, Triple, end_of
 from uvf.planning.sampling.clearance import free_length, is_free_way
 from uvf.planning.sampling.neighbours import NearestNodes, found, nearest
-from uvf.planning.sampling.problem import Problem
+from uvf.planning.sampling.problem import SamplingProblem
 from uvf.planning.sampling.spaces import PLANE, connect, cut, distance, leaving
 from uvf.planning.sampling.tree import GOAL, PARENT, SIZE, CurveTree, add, is_full, lead_anew, node, put
 
@@ -48,7 +48,7 @@ def buffers() -> GrowthBuffers:
 
 
 @compiled
-def _somewhere(problem: Problem, row: Floats) -> Triple:
+def _somewhere(problem: SamplingProblem, row: Floats) -> Triple:
     """On one of the cells that may be on a way, each as likely."""
     columns = problem.field.values.shape[1]
     part = row[0] * problem.cells.size
@@ -60,7 +60,7 @@ def _somewhere(problem: Problem, row: Floats) -> Triple:
 
 
 @compiled
-def _in_ellipse(problem: Problem, row: Floats, best: float, least: float) -> Triple:
+def _in_ellipse(problem: SamplingProblem, row: Floats, best: float, least: float) -> Triple:
     """In the ellipse about start and goal over which a way may be shorter than ``best`` [m] (Gammell, Srinivasa, Barfoot 2014)."""
     start, goal = problem.start, problem.goal
     size, angle = sqrt(row[0]), 2.0 * pi * row[1]
@@ -72,14 +72,14 @@ def _in_ellipse(problem: Problem, row: Floats, best: float, least: float) -> Tri
 
 
 @compiled
-def _beside(problem: Problem, at: Triple, row: Floats) -> Triple:
+def _beside(problem: SamplingProblem, at: Triple, row: Floats) -> Triple:
     """Within half a step of a configuration, and half a radian."""
     away, angle = 0.5 * problem.step * row[0], 2.0 * pi * row[1]
     return at[0] + away * cos(angle), at[1] + away * sin(angle), at[2] + (row[2] - 0.5)
 
 
 @compiled
-def _beside_way(problem: Problem, tree: CurveTree, row: Floats) -> Triple:
+def _beside_way(problem: SamplingProblem, tree: CurveTree, row: Floats) -> Triple:
     """Beside one of the nodes on the way known."""
     count, i = 0, tree.state[GOAL]
     while i >= 0:
@@ -91,7 +91,7 @@ def _beside_way(problem: Problem, tree: CurveTree, row: Floats) -> Triple:
 
 
 @compiled
-def draw(problem: Problem, tree: CurveTree, row: Floats, buffers: GrowthBuffers) -> Triple:
+def draw(problem: SamplingProblem, tree: CurveTree, row: Floats, buffers: GrowthBuffers) -> Triple:
     """A sample from the random numbers ``row`` (5,), in a tree that may know a way to the goal."""
     if tree.state[GOAL] < 0:
         if row[3] < GOAL_BIAS:
@@ -116,7 +116,7 @@ def draw(problem: Problem, tree: CurveTree, row: Floats, buffers: GrowthBuffers)
 
 
 @compiled
-def can_be_on_way(problem: Problem, at: Triple, best: float) -> bool:
+def can_be_on_way(problem: SamplingProblem, at: Triple, best: float) -> bool:
     """Whether the way over a place, were nothing in between, is shorter than ``best`` [m], and its cell is not known to be useless."""
     row, column = (at[1] - problem.field.y) / problem.field.resolution, (at[0] - problem.field.x) / problem.field.resolution
     rows, columns = problem.field.values.shape
@@ -128,7 +128,7 @@ def can_be_on_way(problem: Problem, at: Triple, best: float) -> bool:
 
 
 @compiled
-def closest(problem: Problem, tree: CurveTree, target: Triple, buffers: GrowthBuffers) -> int:
+def closest(problem: SamplingProblem, tree: CurveTree, target: Triple, buffers: GrowthBuffers) -> int:
     """How many near nodes there are; ``buffers.costs`` are the lengths [m] of the curves from them to ``target``."""
     most = 1 if problem.space.kind == PLANE else CANDIDATES
     count = nearest(tree.buckets, tree.nodes, target, problem.weight, most, buffers.near)
@@ -138,7 +138,7 @@ def closest(problem: Problem, tree: CurveTree, target: Triple, buffers: GrowthBu
 
 
 @compiled
-def extend(problem: Problem, tree: CurveTree, target: Triple, facing: float, buffers: GrowthBuffers) -> tuple[int, Triple, float]:
+def extend(problem: SamplingProblem, tree: CurveTree, target: Triple, facing: float, buffers: GrowthBuffers) -> tuple[int, Triple, float]:
     """A new node on the way from the tree to ``target``: the node that it follows (-1: there is none), its place, and the curve's length.
 
     The curve, [m] and [1/m], is in ``buffers.curve``; at most a step long, and free. From the near nodes, the one from which the curve is
@@ -165,7 +165,7 @@ def extend(problem: Problem, tree: CurveTree, target: Triple, facing: float, buf
 
 
 @compiled
-def try_goal(problem: Problem, tree: CurveTree, i: int, way: float, buffers: GrowthBuffers) -> bool:
+def try_goal(problem: SamplingProblem, tree: CurveTree, i: int, way: float, buffers: GrowthBuffers) -> bool:
     """Leads from node ``i`` to the goal, over ``way`` [m], if that is free and no way known is shorter."""
     known = tree.state[GOAL]
     cost = tree.costs[i] + way
@@ -182,7 +182,7 @@ def try_goal(problem: Problem, tree: CurveTree, i: int, way: float, buffers: Gro
 
 
 @compiled
-def grow_rrt(problem: Problem, tree: CurveTree, draws: Floats, buffers: GrowthBuffers) -> int:
+def grow_rrt(problem: SamplingProblem, tree: CurveTree, draws: Floats, buffers: GrowthBuffers) -> int:
     """Grows a tree by an iteration for each row of ``draws`` (n, 5) until it reaches the goal or is full; iterations done."""
     for k in range(draws.shape[0]):
         if tree.state[GOAL] >= 0 or is_full(tree):

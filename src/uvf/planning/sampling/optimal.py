@@ -14,7 +14,7 @@ from uvf.maths.curves.segments import Triple
 from uvf.planning.sampling.clearance import is_free_way
 from uvf.planning.sampling.growing import NOTHING, GrowthBuffers, can_be_on_way, draw, extend, try_goal
 from uvf.planning.sampling.neighbours import nearest
-from uvf.planning.sampling.problem import Problem
+from uvf.planning.sampling.problem import SamplingProblem
 from uvf.planning.sampling.spaces import PLANE, connect, distance, leaving
 from uvf.planning.sampling.tree import GOAL, PARENT, SIZE, CurveTree, add, is_full, lead_anew, node
 
@@ -22,14 +22,16 @@ Floats = NDArray[np.float64]
 
 
 @compiled
-def neighbour_count(problem: Problem, size: int, most: int) -> int:
+def neighbour_count(problem: SamplingProblem, size: int, most: int) -> int:
     """Neighbours of k-RRT*: e (1 + 1/d) log n, at most ``most``."""
     dimensions = 2.0 if problem.space.kind == PLANE else 3.0
     return int(min(ceil(e * (1.0 + 1.0 / dimensions) * log(size + 1.0)), most))
 
 
 @compiled
-def _cheapest_way(problem: Problem, tree: CurveTree, at: Triple, limit: float, count: int, buffers: GrowthBuffers) -> tuple[int, float]:
+def _cheapest_way(
+    problem: SamplingProblem, tree: CurveTree, at: Triple, limit: float, count: int, buffers: GrowthBuffers
+) -> tuple[int, float]:
     """(node, cost [m] of the way over it) of the neighbour that leads to ``at`` at the least cost below ``limit``, -1: none.
 
     The curve is in ``buffers.curve``, left as it was if there is none. Curves are looked at from the cheapest on until one is free.
@@ -53,7 +55,7 @@ def _cheapest_way(problem: Problem, tree: CurveTree, at: Triple, limit: float, c
 
 
 @compiled
-def _rewire(problem: Problem, tree: CurveTree, new: int, count: int, buffers: GrowthBuffers) -> None:
+def _rewire(problem: SamplingProblem, tree: CurveTree, new: int, count: int, buffers: GrowthBuffers) -> None:
     """Leads to neighbours over the new node where that costs less."""
     at = node(tree, new)
     for k in range(count):
@@ -69,7 +71,7 @@ def _rewire(problem: Problem, tree: CurveTree, new: int, count: int, buffers: Gr
 
 
 @compiled
-def grow_rrt_star(problem: Problem, tree: CurveTree, draws: Floats, buffers: GrowthBuffers) -> int:
+def grow_rrt_star(problem: SamplingProblem, tree: CurveTree, draws: Floats, buffers: GrowthBuffers) -> int:
     """Grows a tree by an iteration for each row of ``draws`` (n, 5) until it is full, or no way can be shorter; iterations done."""
     straight = distance(problem.space, problem.start, problem.goal)
     if tree.state[SIZE] == 1 and draws.shape[0] > 0:

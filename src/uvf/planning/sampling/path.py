@@ -15,7 +15,7 @@ X, Y, HEADING, LENGTH, CURVATURE = 0, 1, 2, 3, 4
 
 
 @dataclass(frozen=True)
-class Path:
+class SamplingPath:
     """``pieces`` (n, 5): x, y [m], heading [rad] where each begins, signed length [m], negative = backwards, curvature [1/m].
 
     ``end``: x, y [m], heading [rad] of the last one's end.

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
 from uvf.maths.curves.segments import Triple, moved
-from uvf.planning.sampling.path import Path
+from uvf.planning.sampling.path import SamplingPath
 from uvf.planning.sampling.spaces import SteeringSpace, leaving
 from uvf.planning.sampling.tree import CurveTree, node
 
@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 @compiled
 def pieces_of(start: Triple, segments: Floats) -> Floats:
-    """Pieces (k, 5), as in ``Path``, of segments (k, 2) from ``start``."""
+    """Pieces (k, 5), as in ``SamplingPath``, of segments (k, 2) from ``start``."""
     out = np.empty((segments.shape[0], 5))
     x, y, heading = start
     for k in range(segments.shape[0]):
@@ -52,7 +52,7 @@ def pieces_back(grown: CurveTree, nodes: Sequence[int], space: SteeringSpace) ->
     return driven_back(pieces_there(grown, nodes, space))
 
 
-def joined(parts: Sequence[Floats], end: Triple) -> Path:
+def joined(parts: Sequence[Floats], end: Triple) -> SamplingPath:
     """The path of all pieces that have a length, with its ``end``."""
     pieces = np.vstack(parts)
-    return Path(pieces[pieces[:, 3] != 0.0], end)
+    return SamplingPath(pieces[pieces[:, 3] != 0.0], end)

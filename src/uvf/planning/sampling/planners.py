@@ -12,7 +12,7 @@ from uvf.planning.sampling.connecting import grow_rrt_connect
 from uvf.planning.sampling.growing import DRAWS, buffers, grow_rrt
 from uvf.planning.sampling.optimal import grow_rrt_star
 from uvf.planning.sampling.pieces import joined, pieces_back, pieces_there
-from uvf.planning.sampling.problem import Budget, Ground, Problem, SamplingPlan, problem
+from uvf.planning.sampling.problem import Budget, Ground, SamplingPlan, SamplingProblem, problem
 from uvf.planning.sampling.spaces import SteeringSpace, turned
 from uvf.planning.sampling.tree import GOAL, SIZE, CurveTree, tree, way_to
 
@@ -72,7 +72,7 @@ def rrt_connect(ground: Ground, space: SteeringSpace, query: Query, budget: Budg
     return SamplingPlan(joined(pieces, asked.goal), "", nodes, done)
 
 
-def _tree(asked: Problem, root: Triple, budget: Budget) -> CurveTree:
+def _tree(asked: SamplingProblem, root: Triple, budget: Budget) -> CurveTree:
     (rows, columns), side = asked.field.values.shape, asked.field.resolution
     low = (asked.field.x, asked.field.y)
     # Of RRT-Connect an iteration may add as many nodes as there are steps on the longest curve.
@@ -106,7 +106,7 @@ def _spend(clock: Clock, seed: int, grow: Callable[[Floats, int], tuple[int, boo
     return done
 
 
-def _plan(grown: CurveTree, asked: Problem, done: int) -> SamplingPlan:
+def _plan(grown: CurveTree, asked: SamplingProblem, done: int) -> SamplingPlan:
     goal, nodes = int(grown.state[GOAL]), int(grown.state[SIZE])
     if goal < 0:
         return SamplingPlan(None, FULL if nodes >= LARGEST - 2 else NOT_FOUND, nodes, done)

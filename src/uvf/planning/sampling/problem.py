@@ -11,7 +11,7 @@ from scipy import ndimage
 from uvf.maths.curves.segments import Triple, checked_configuration
 from uvf.planning.costmap.inflation import LETHAL, MAX_NON_OBSTACLE, cost_factors
 from uvf.planning.sampling.clearance import Body, ClearanceField, checked_field, is_clear
-from uvf.planning.sampling.path import Path
+from uvf.planning.sampling.path import SamplingPath
 from uvf.planning.sampling.spaces import PLANE, SteeringSpace
 from uvf.planning.search.grid_search import GridSearch
 
@@ -44,7 +44,7 @@ class Budget:
 class SamplingPlan:
     """A planner's answer: the ``path``, or None and the ``reason``. ``nodes`` are those of its trees or roadmap."""
 
-    path: Path | None
+    path: SamplingPath | None
     reason: str
     nodes: int
     iterations: int
@@ -55,7 +55,7 @@ class SamplingPlan:
         return self.path.length if self.path else inf
 
 
-class Problem(NamedTuple):
+class SamplingProblem(NamedTuple):
     """What kernels need: ``step`` [m] is the longest new curve, ``weight`` [m/rad] that of a heading among neighbours.
 
     ``cells`` (n,) are flat indices of the cells that may be on a way, ``guide`` (m, 3) is a way over them for who needs no room to turn;
@@ -73,7 +73,7 @@ class Problem(NamedTuple):
     guide: Floats
 
 
-def problem(ground: Ground, space: SteeringSpace, start: Triple, goal: Triple) -> Problem | str:
+def problem(ground: Ground, space: SteeringSpace, start: Triple, goal: Triple) -> SamplingProblem | str:
     """What kernels need to find a way from ``start`` to ``goal``, or why there is none.
 
     start, goal: x, y [m, map frame], heading [rad]. Raises ValueError for what is not finite and a field that makes no sense.
@@ -90,7 +90,7 @@ def problem(ground: Ground, space: SteeringSpace, start: Triple, goal: Triple) -
         return "no way leads to the goal: the body does not fit through, whichever way it turns"
     rows, columns = field.values.shape
     step = max(STEP * hypot(rows, columns) * field.resolution, TURNS * space.radius)
-    return Problem(field, body, space, start, goal, step, space.radius, cells, _guide(field, body, space, (start, goal)))
+    return SamplingProblem(field, body, space, start, goal, step, space.radius, cells, _guide(field, body, space, (start, goal)))
 
 
 def _fault(field: ClearanceField, body: Body, space: SteeringSpace, at: Triple) -> str:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from uvf.maths.compiled import compiled
 from uvf.maths.curves.segments import MOST, Triple, moved
 from uvf.planning.sampling.clearance import is_free_way
-from uvf.planning.sampling.path import Path
+from uvf.planning.sampling.path import SamplingPath
 from uvf.planning.sampling.pieces import pieces_of
 from uvf.planning.sampling.problem import Ground
 from uvf.planning.sampling.spaces import SteeringSpace, connect, leaving
@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 GAIN = 1e-6  # m, by which a curve is shorter at least
 
 
-def shortened(ground: Ground, space: SteeringSpace, path: Path, tries: int, seed: int) -> Path:
+def shortened(ground: Ground, space: SteeringSpace, path: SamplingPath, tries: int, seed: int) -> SamplingPath:
     """The path after so many ``tries`` to cut it short, never longer, as free as it was; the same for the same ``seed``.
 
     Raises ValueError for a negative number of tries.
@@ -30,7 +30,7 @@ def shortened(ground: Ground, space: SteeringSpace, path: Path, tries: int, seed
     buffer = np.empty((len(path.pieces) + tries * (MOST + 2), 5))
     buffer[: len(path.pieces)] = path.pieces
     count = _shorten(ground, space, buffer, (len(path.pieces), path.end), draws)
-    return Path(buffer[:count].copy(), path.end)
+    return SamplingPath(buffer[:count].copy(), path.end)
 
 
 @compiled

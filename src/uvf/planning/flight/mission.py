@@ -1,0 +1,109 @@
+"""A planned path of an aircraft as mission items, each way between two looked at as the autopilot flies it.
+
+The autopilot leads from one given course to the next along the shortest Dubins path whose curvature rises and falls gradually
+(``uvf.guidance.clothoid_dubins``), and climbs evenly on it. That is not quite the planned edge, so it is tested anew; where it would be
+too steep, the mission circles to the height.
+"""
+
+from dataclasses import dataclass
+from math import remainder, tau
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.guidance.clothoid_dubins import smooth_dubins_path
+from uvf.models.mission.file import Waypoint
+from uvf.planning.flight.airspace import Airspace, Space, space_of
+from uvf.planning.flight.clearance import ClearanceMargins, Configuration, are_clear
+from uvf.planning.flight.loiter import LoiterPattern, exits, plan_loiter
+from uvf.planning.flight.planner import DubinsAirplanePath, FlightLimits
+
+Floats = NDArray[np.float64]
+
+DECIMALS = 2  # of metres
+EXITS = 24  # places on a circle from which the way on is tested
+
+
+@dataclass(frozen=True)
+class FlownTurns:
+    """How the autopilot turns: ``radius`` [m] over ground and ``ramp`` [m], in which it rolls from level to the bank of the turn.
+
+    fence_room: [m] that straight lines between items keep from the fence's edges, as the autopilot's check of missions asks for.
+    """
+
+    radius: float
+    ramp: float
+    fence_room: float
+
+
+@dataclass(frozen=True)
+class _Flown:
+    """What the ways of one mission are tested against."""
+
+    airspace: Airspace
+    space: Space
+    limits: FlightLimits
+    turns: FlownTurns
+
+    @property
+    def margins(self) -> ClearanceMargins:
+        return ClearanceMargins(float(self.limits.aside), float(self.limits.above))
+
+    def way(self, a: Configuration, b: Configuration) -> Floats:
+        """(n, 3) x, y, height [m] that are flown from ``a`` to ``b``."""
+        path = smooth_dubins_path((a[0], a[1], a[3]), (b[0], b[1], b[3]), self.turns.radius, self.turns.ramp)
+        return np.column_stack((path.points, a[2] + (b[2] - a[2]) * path.s / max(path.length, 1e-9)))
+
+    def is_open(self, a: Configuration, b: Configuration) -> bool:
+        """Whether the way is clear, and not too steep."""
+        way = self.way(a, b)
+        length = float(np.hypot(*np.diff(way[:, :2], axis=0).T).sum())
+        steepest = np.tan(self.limits.climb if b[2] >= a[2] else self.limits.sink)
+        if abs(b[2] - a[2]) > steepest * length * (1 + 1e-6) + 1e-6 or not are_clear(self.space, self.margins, way):
+            return False
+        return self.airspace.fence.leaves((a[0], a[1]), (b[0], b[1]), self.turns.fence_room) is None
+
+
+def flight_items(path: DubinsAirplanePath, airspace: Airspace, limits: FlightLimits, turns: FlownTurns) -> list[Waypoint] | None:
+    """Mission items (x east, y north) from the path's start, which is none of them, to its goal; None where a way between is not clear.
+
+    Nodes that are not needed are left out. A climb that is too steep becomes an ``orbit`` to altitude, before it or behind a descent.
+    """
+    flown, items = _Flown(airspace, space_of(airspace), limits, turns), list[Waypoint]()
+    nodes: list[Configuration] = [(x, y, height, course) for x, y, height, course in path.waypoints.tolist()]
+    here, last = 0, len(nodes) - 1
+    while here < last:
+        ahead = next((k for k in range(last, here, -1) if flown.is_open(nodes[here], nodes[k])), None)
+        if ahead is not None:
+            items.append(waypoint(nodes[ahead]))
+        elif (circled := _circled(flown, nodes[here], nodes[here + 1])) is not None:
+            items += circled
+        else:
+            return None
+        here = here + 1 if ahead is None else ahead
+    return items
+
+
+def _circled(flown: _Flown, a: Configuration, b: Configuration) -> list[Waypoint] | None:
+    """From ``a`` to ``b`` with a circle at the one of them at which there is room: first at ``a`` for a climb, at ``b`` for a descent."""
+    at_start, at_end = (a[0], a[1], a[2], a[3]), (b[0], b[1], a[2], b[3])
+    for begin in (at_start, at_end) if b[2] > a[2] else (at_end, at_start):
+        if begin is at_end and not flown.is_open(a, begin):
+            continue
+        pattern = plan_loiter(flown.airspace, flown.limits, begin, b[2], flown.limits.radius)
+        if pattern is not None and all(flown.is_open(leaving, b) for leaving in exits(pattern, EXITS)):
+            return [*([waypoint(begin)] if begin is at_end else []), loiter_item(pattern), waypoint(b)]
+    return None
+
+
+def waypoint(at: Configuration) -> Waypoint:
+    """The item that is passed at a place on its course."""
+    course = round(remainder(at[3], tau), 5)
+    return Waypoint(round(at[0], DECIMALS), round(at[1], DECIMALS), round(at[2], DECIMALS), course=course)
+
+
+def loiter_item(pattern: LoiterPattern) -> Waypoint:
+    """The orbit of a pattern: to its height, or without end where it has no height to reach."""
+    (x, y), climbs = pattern.centre, pattern.length > 0
+    place = round(x, DECIMALS), round(y, DECIMALS), round(pattern.height, DECIMALS)
+    return Waypoint(*place, kind="orbit", radius=round(-pattern.radius, DECIMALS), to_altitude=climbs)
