@@ -29,15 +29,16 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.planner.directives import directive_message, path_message, report_of
+from services.planner.exploration_goals import ExplorationGoals
 from services.planner.goal_desk import GoalDesk
 from services.planner.jobs import IDLE, Goal, Job, Orders, ReturnPoints, choose, home_of, mission_target, not_now
+from services.planner.masks import MaskReader
 from services.planner.params import PlannerParams
 from services.planner.planned_vehicle import PlannedVehicle
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse, transform
 from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
-from uvf.planning.exploration import Explorer, Patrol
 from uvf.planning.frontiers import FrontierWeights
 from uvf.planning.global_planner import NO_PLACE, GlobalPlanner, PlannedBody
 from uvf.planning.navigation.directive import Directive
@@ -80,6 +81,7 @@ class PlannerService(Service):
         map: Grid = topic(topics.MAP)
         scan: LaserScan | None = optional(topics.SCAN)
         report: NavReport | None = optional(topics.NAV_REPORT)
+        keep_out: Grid | None = optional(topics.KEEP_OUT)
         status: VehicleStatus | None = optional(topics.STATUS)
         mission: Mission | None = optional(topics.MISSION)
         progress: MissionProgress | None = optional(topics.PROGRESS)
@@ -119,7 +121,8 @@ class PlannerService(Service):
         self._planner = GlobalPlanner(self._body)
         self._routes = GlobalRoutes(self._planner, self._layer)
         self._navigator = Navigator(self._routes, self._patience)
-        self._explorer, self._patrol = Explorer(self._taste), Patrol()
+        self._keep_out = MaskReader()
+        self._exploration = ExplorationGoals(self._planner, self._taste)
         self._return_points = ReturnPoints()
         self._map_stamp = -1.0
         self._job: Job = IDLE
@@ -130,8 +133,6 @@ class PlannerService(Service):
         self._ended_at: float | None = None
         """When a person's goal was reached or cancelled, as ``_ending`` says."""
         self._ending: NavStatus.State = NavStatus.REACHED
-        self._shut_in = False
-        """Nothing can be planned from where the vehicle stands; told when it begins."""
         self._try_at = inf
         """When a place that was given up is tried again."""
         self._told = 0
@@ -147,6 +148,9 @@ class PlannerService(Service):
             return self.stale(t, ("pose",))
         here, self._desk.bounds = self._here, now.bounds
         self._fit()
+        mask = self._keep_out.take(now.keep_out)
+        if mask is not None and self._keep_out.is_new:
+            self._routes.keep_out(mask, self._world_from_map)
         changed = self._look(now.map, now.scan, here)
         goal_replies = self._ask_all(t, here, now.goal, now.status)
         place = compose(self._world_from_map, here)[:2]
@@ -214,7 +218,7 @@ class PlannerService(Service):
 
     def _fit(self) -> None:
         """Heeds the parameters."""
-        self._explorer.taste = self._taste
+        self._exploration.explorer.taste = self._taste
         self._navigator.fit(self._patience)
         if self._planner.fit(self._body):
             self._navigator.replan()
@@ -276,9 +280,8 @@ class PlannerService(Service):
         if job.name != self._job.name:
             self._tell(t, f"job: {job.name}", "")
         self._job, self._target, self._reason = job, None, ""
-        self._shut_in = False
+        self._exploration.begin()
         self._ended_at, self._try_at = None, inf
-        self._explorer.goal = None
 
     def _aim(self, t: float, here: Pose2, changed: bool) -> None:
         """Where the job leads now."""
@@ -312,18 +315,13 @@ class PlannerService(Service):
         return hypot(here[0] - self._target[0], here[1] - self._target[1]) > PUSHED * self.params.goal_tolerance
 
     def _aim_exploring(self, t: float, here: Pose2) -> None:
-        ways, costs, reason = self._planner.ways(here[:2]), self._planner.costs, self._planner.shut_in(here[:2])
-        if reason and not self._shut_in:
+        was_shut_in = self._exploration.is_shut_in
+        target, reason = self._exploration.choose(t, here[:2])
+        if self._exploration.is_shut_in and not was_shut_in:
             self._tell(t, "explore: nothing can be planned", reason, Event.WARNING)
-        self._shut_in = bool(reason)
-        if reason or ways is None or costs is None:
-            self._navigator.cancel(t)
-            self._target, self._reason = None, reason
-            return
-        target = self._explorer.choose(t, costs, ways) or self._patrol.choose(here[:2], costs, ways)
         if target is None:
             self._navigator.cancel(t)
-            self._target, self._reason = None, "everything is explored"
+            self._target, self._reason = None, reason
         elif target != self._target or not self._navigator.is_busy:
             self._go(t, target, self.params.look_tolerance)
 
@@ -344,8 +342,7 @@ class PlannerService(Service):
         elif told.status == Status.ABORTED:
             self._give_up(t, told.reason)
         if self._job.name == "explore" and told.status in (Status.REACHED, Status.ABORTED):
-            self._explorer.blacklist_goal(t)
-            self._patrol.reached()
+            self._exploration.done(t)
             self._target = None
 
     def _give_up(self, t: float, reason: str) -> None:
@@ -366,7 +363,9 @@ class PlannerService(Service):
 
     def _nav_status(self, t: float) -> NavStatus:
         told = self._navigator.feedback
-        status = NavStatus(timestamp=stamp(t), job=self._job.name, reason=self._reason or told.reason, explored=self._explorer.explored)
+        status = NavStatus(
+            timestamp=stamp(t), job=self._job.name, reason=self._reason or told.reason, explored=self._exploration.explorer.explored
+        )
         status.state, status.recoveries = self._state(told.status), told.recoveries
         if self._target is not None:
             x, y, _ = compose(self._world_from_map, Pose2(self._target[0], self._target[1], 0.0))
@@ -381,7 +380,7 @@ class PlannerService(Service):
         if self._ended_at is not None:
             return self._ending
         if self._target is None:
-            return NavStatus.BLOCKED if self._shut_in else NavStatus.IDLE
+            return NavStatus.BLOCKED if self._exploration.is_shut_in else NavStatus.IDLE
         if self._reason:
             return NavStatus.BLOCKED
         return STATES[status]

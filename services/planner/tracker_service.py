@@ -8,8 +8,9 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.messages import DriveCommand, Event, LaserScan, NavDirective, NavReport, Odometry, PoseInFrame, PosesInFrame
+from schemas.messages import DriveCommand, Event, Grid, LaserScan, NavDirective, NavReport, Odometry, PoseInFrame, PosesInFrame
 from services.planner.directives import directive_of, report_message
+from services.planner.masks import MaskReader
 from services.planner.scan_placing import ScanPlacer
 from uvf.maths.se2 import IDENTITY, Pose2
 from uvf.maths.se3 import Transform
@@ -35,6 +36,7 @@ Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
 
 PERIOD = 0.1  # s
+KEEP_OUT_REACH = 3.0  # m
 SCAN_MAX_AGE = 0.6  # s; without sight nothing moves
 SIZE = 8.0  # m, side of the window in which obstacles are remembered
 FARTHEST = 0.95 * SIZE / 2  # m
@@ -67,13 +69,15 @@ class TrackerService(Service):
     fixed_params = frozenset(("local_planner",))
 
     class Inputs(Reads):
-        """Directive and path, poses, odometry, and the lidar's scan."""
+        """Directive and path, poses, odometry, the lidar's scan, and masks drawn over the map."""
 
         directive: NavDirective = topic(topics.NAV_DIRECTIVE)
         path: PosesInFrame = topic(topics.PATH)
         pose: list[PoseInFrame] = every(topics.POSE)
         odometry: Odometry | None = optional(topics.ODOMETRY)
         scan: LaserScan = topic(topics.SCAN)
+        keep_out: Grid | None = optional(topics.KEEP_OUT)
+        speed_map: Grid | None = optional(topics.SPEED_MAP)
 
     class Outputs(Writes):
         """Velocity command, report and events."""
@@ -97,18 +101,21 @@ class TrackerService(Service):
         self._placer = ScanPlacer(base_from_lidar, sweeping, FARTHEST)
         self._pose: Pose2 = IDENTITY
         self._velocity = (0.0, 0.0)
-        self._made_for = params
+        self._made_for = params, 1.0
+        self._keep_out, self._speed_map = MaskReader(), MaskReader()
         self._executor = Executor(self._controller())
         self._told_at = -np.inf
 
     def step(self, t: float, now: Inputs) -> Outputs:
         """One cycle at ``t`` [s, simulation]: what the directive says, slowed before obstacles that the scan shows."""
-        self._heed_params()
         for message in now.pose:
             self._pose = pose2_of(message.pose)
             self._placer.move(seconds(message.timestamp), self._pose)
+        self._heed_params(self._share(now.speed_map))
         if (seen := self._placer.place(now.scan)) is not None:
             self._executor.controller.see(seen.t, seen.pose, seen.eye, seen.points, seen.ranges)
+            if (mask := self._keep_out.take(now.keep_out)) is not None:
+                self._executor.controller.keep_out(mask.kept_out_near(self._pose[:2], KEEP_OUT_REACH))
         if t - self._placer.t > SCAN_MAX_AGE:
             return self.stale(t, ("scan",))
         if now.odometry is not None:
@@ -126,18 +133,25 @@ class TrackerService(Service):
         self._executor.controller.halt()
         return self.Outputs(drive=DriveCommand(timestamp=stamp(t)))
 
-    def _heed_params(self) -> None:
-        """Takes other parameters over without forgetting what was seen."""
-        params = self.params
-        if params == self._made_for:
+    def _share(self, grid: Grid | None) -> float:
+        """Share [0..1] of the speed that is allowed where the vehicle is; nothing is said where nothing is drawn."""
+        mask = self._speed_map.take(grid)
+        percent = 0 if mask is None else int(mask.at(np.array((self._pose[:2],)))[0])
+        return percent / 100.0 if 0 < percent < 100 else 1.0
+
+    def _heed_params(self, share: float) -> None:
+        """Takes other parameters, or another speed that is allowed, over without forgetting what was seen."""
+        wanted = self.params, share
+        if wanted == self._made_for:
             return
-        self._made_for, controller = params, self._controller()
-        controller.layer, controller.moving = self._executor.controller.layer, self._executor.controller.moving
+        self._made_for, old = wanted, self._executor.controller
+        controller = self._controller()
+        controller.layer, controller.moving = old.layer, old.moving
         self._executor.controller = controller
 
     def _controller(self) -> LocalController:
         params, body = self.params, self._body
-        speed, turn_rate = min(params.speed, body.max_linear), min(params.turn_speed, body.max_angular)
+        speed, turn_rate = self._made_for[1] * min(params.speed, body.max_linear), min(params.turn_speed, body.max_angular)
         limits = Limits(
             -REVERSE * speed, speed, turn_rate, body.max_linear_acceleration, body.max_angular_acceleration, LATERAL_ACCELERATION
         )

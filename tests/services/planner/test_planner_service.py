@@ -37,7 +37,7 @@ from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
 from uvf.sensors.sweeping import AT_ONCE
 
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
-NOTHING = dict.fromkeys(("scan", "report", "mission", "progress", "bounds", "rally"))
+NOTHING = dict.fromkeys(("scan", "report", "keep_out", "mission", "progress", "bounds", "rally"))
 START = (10.0, 20.0, np.pi / 2)
 """The map lies here in the world, turned: map x is world y."""
 

@@ -13,7 +13,7 @@ from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2, transform
 from uvf.maths.se3 import IDENTITY, Transform
 from uvf.planning.costmap.footprint import RobotFootprint
-from uvf.runtime.messages.convert import planar_pose, pose2_of, seconds, stamp
+from uvf.runtime.messages.convert import occupancy_grid, planar_pose, pose2_of, seconds, stamp
 from uvf.sensors.sweeping import AT_ONCE, SPACING, Sweeping
 
 
@@ -29,6 +29,7 @@ def scan(t, ahead, yaw=0.0, around=0.0):
 
 FOOTPRINT = RobotFootprint.circle(BODY.radius)
 EAST = PosesInFrame(poses=[Pose(position=Vector3(x=0.1 * i)) for i in range(31)])
+NOTHING = dict.fromkeys(("odometry", "keep_out", "speed_map"))
 FOLLOW = NavDirective(number=1, action=NavDirective.FOLLOW)
 
 
@@ -40,23 +41,24 @@ class TrackerBench:
         self.t = 0.0
         self.pose = np.zeros(3)
         self.commands = []
+        self.places = []
         self.events = []
         self.report = None
 
-    def step(self, n, ahead, blind=False, directive=FOLLOW, moves=False, around=0.0):
+    def step(self, n, ahead, blind=False, directive=FOLLOW, moves=False, around=0.0, **masks):
         for _ in range(n):
             self.t += 0.1
             x, y, yaw = self.pose
             poses = [PoseInFrame(timestamp=stamp(self.t - s), pose=planar_pose(x, y, yaw)) for s in (0.08, 0.04, 0.02)]
             seen_at = 0.0 if blind else self.t - 0.03
-            out = stepped(
-                self.service, self.t, directive=directive, path=EAST, pose=poses, odometry=None, scan=scan(seen_at, ahead - x, yaw, around)
-            )
+            told = NOTHING | masks | {"directive": directive, "path": EAST, "pose": poses}
+            out = stepped(self.service, self.t, scan=scan(seen_at, ahead - x, yaw, around), **told)
             self.commands.append((out["drive"].linear, out["drive"].angular))
             self.events += [e.text for e in out.get("events", [])]
             self.report = out.get("report")
             if moves:
                 v, w = self.commands[-1]
+                self.places.append((x, y))
                 self.pose += (0.1 * v * np.cos(yaw), 0.1 * v * np.sin(yaw), 0.1 * w)
         return self
 
@@ -114,6 +116,27 @@ def test_backs_up_as_told_but_not_into_what_stands_behind():
     assert bench.pose[0] + BODY.radius < 0.25
 
 
+def drawn(value, x, y, size=1.0):
+    """A mask with a square of ``size`` [m] about (x, y) [m, world]."""
+    cells = np.zeros((80, 80), dtype=np.int8)
+    at = (np.arange(80) + 0.5) * 0.1 - 4.0
+    cells[(np.abs(at - y) <= size / 2)[:, None] & (np.abs(at - x) <= size / 2)] = value
+    return occupancy_grid(cells, 0.1, -4.0, -4.0, "world", 0.0)
+
+
+def test_it_keeps_out_of_what_is_drawn_though_nothing_is_seen_there():
+    bench = TrackerBench().step(150, ahead=5.0, moves=True, keep_out=drawn(100, 1.5, 0.0))
+    nearest = min(max(abs(x - 1.5), abs(y)) for x, y in bench.places)
+    assert nearest > 0.5 + BODY.radius - 0.06
+    assert bench.pose[0] > 2.5  # it went round
+
+
+def test_it_is_as_slow_as_is_drawn_where_it_is():
+    bench = TrackerBench().step(15, ahead=5.0, speed_map=drawn(40, 0.0, 0.0, 2.0))
+    assert bench.speed == pytest.approx(0.4 * TrackerParams().speed, abs=0.03)
+    assert TrackerBench().step(15, ahead=5.0, speed_map=drawn(40, 3.0, 3.0, 0.5)).speed > 0.4
+
+
 def test_an_unknown_action_means_to_stop():
     bench = TrackerBench().step(10, ahead=3.0)
     assert bench.step(3, ahead=3.0, directive=NavDirective(number=2, action=99)).commands[-1] == (0.0, 0.0)
@@ -124,7 +147,7 @@ def test_what_a_scanner_sees_that_hangs_upside_down_is_on_the_side_where_it_is()
     beside = LaserScan(timestamp=stamp(1.0), start_angle=-1.0, end_angle=-0.8, ranges=[0.5] * 9)
     poses = [PoseInFrame(timestamp=stamp(1.0), pose=planar_pose(0.0, 0.0, 0.0))]
     service = TrackerService(BODY, FOOTPRINT, Transform(from_euler(np.pi, 0.0, 0.0), np.zeros(3)), TrackerParams())
-    stepped(service, 1.0, directive=FOLLOW, path=EAST, pose=poses, odometry=None, scan=beside)
+    stepped(service, 1.0, directive=FOLLOW, path=EAST, pose=poses, scan=beside, **NOTHING)
     seen = service._executor.controller.layer.lethal_near((0.0, 0.0), 1.0)
     assert len(seen) >= 2 and (seen[:, 1] > 0.3).all()
 
@@ -172,7 +195,7 @@ def test_a_sweep_counts_when_the_pose_at_its_last_beam_is_known():
 def test_a_slow_scan_is_as_old_as_its_last_beam():
     wall = scan(1.0, ahead=3.0)
     service = TrackerService(BODY, FOOTPRINT, IDENTITY, TrackerParams(), Sweeping(0.5))
-    told = {"directive": FOLLOW, "path": EAST, "odometry": None, "scan": wall}
+    told = NOTHING | {"directive": FOLLOW, "path": EAST, "scan": wall}
     poses = [PoseInFrame(timestamp=stamp(0.02 * k), pose=planar_pose(0.0, 0.0, 0.0)) for k in range(100)]
     assert stepped(service, 2.0, pose=poses, **told)["drive"].linear > 0.05
     assert stepped(service, 2.2, pose=[], **told)["drive"].linear == 0.0

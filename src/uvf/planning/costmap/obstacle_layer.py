@@ -146,6 +146,10 @@ class ObstacleLayer:
         mark_ends(self.cells, self._seen, self._hit, frame, seen.ends[whole & inside & seen.hits], (seen.age, self._count))
         clear_beams(self.cells, self._freed, self._hit, frame, (seen.eye, ends), (self._ms(seen.t), self._count))
 
+    def mark(self, points: Floats, age: float) -> None:
+        """Marks points (n, 2) [m] that no beam can see: where it was touched, or where nobody is to drive."""
+        mark_ends(self.cells, self._seen, self._hit, (*self.origin, self.resolution), points, (age, self._count))
+
     def lately_free(self, t: float, eye: Point, points: Floats) -> Mask:
         """(n,) whether something that ends beams from ``eye`` at the points (n, 2) [m] at ``t`` [s] has come there.
 

@@ -117,6 +117,12 @@ class LocalController:
         near = points[(ranges > 0.0) & ~self._evaded(ends) & (np.abs(points) <= NEAR).all(axis=1)]
         self._near = np.concatenate((near, transform(inverse(pose), self.layer.lethal_near((pose[0], pose[1]), REMEMBERED))))
 
+    def keep_out(self, points: Floats) -> None:
+        """Points (n, 2) [m, the poses' frame] that are obstacles though no sensor sees them; told anew after each ``see``."""
+        self.layer.mark(points, self._odometer)
+        if self._pose is not None:
+            self._near = np.concatenate((self._near, transform(inverse(self._pose), points)))
+
     def _evaded(self, ends: Floats) -> NDArray[np.bool_]:
         """Mask (n,) of the points that belong to what moves so fast that the stop would not help against it: it hits who stands.
 

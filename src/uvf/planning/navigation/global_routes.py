@@ -4,10 +4,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from uvf.maths.se2 import Pose2
+from uvf.maths.se2 import Pose2, transform
 from uvf.planning.costmap.costmap import Frame
 from uvf.planning.costmap.inflation import FREE_SPACE, LETHAL
 from uvf.planning.costmap.obstacle_layer import ObstacleLayer
+from uvf.planning.costmap.zone_mask import KEPT_OUT, ZoneMask
 from uvf.planning.global_planner import GlobalPlanner
 from uvf.planning.navigation.navigator import NavigationGoal, Route
 from uvf.planning.navigation.routes import KnownFree, still_free
@@ -29,15 +30,26 @@ class GlobalRoutes:
     def __init__(self, planner: GlobalPlanner, layer: ObstacleLayer) -> None:
         self.allow_unknown = False
         self._planner, self._layer = planner, layer
+        self._drawn: tuple[Cells, Frame] = (np.zeros((0, 0), dtype=np.int8), (1.0, (0.0, 0.0)))
         self._map: tuple[Cells, Frame] | None = None
+        """The map as it was drawn, and with what is to be kept out of."""
         self._walls: NDArray[np.bool_] = np.zeros((0, 0), dtype=np.bool_)
         self._trusts_sight = False
         self._known_free = KnownFree()
+        self._keep_out: tuple[ZoneMask, Pose2] | None = None
         self._shown: bytes | None = None
+
+    def keep_out(self, mask: ZoneMask, mask_from_map: Pose2) -> None:
+        """From now on the vehicle is not to drive where the mask says so."""
+        self._keep_out = mask, mask_from_map
+        if self._map is not None:
+            self.take(*self._drawn)
 
     def take(self, cells: Cells, frame: Frame) -> None:
         """A new map, (rows, columns) of -1 unknown, 0..100 per cent; frame: resolution [m] and origin [m]."""
-        self._map, self._shown = (cells, frame), None
+        self._drawn, self._shown = (cells, frame), None
+        cells = self._kept_out(cells, frame)
+        self._map = cells, frame
         self._walls = ndimage.binary_dilation(cells >= OCCUPIED, WALL)
 
     def look(self, here: tuple[float, float]) -> bool:
@@ -76,6 +88,16 @@ class GlobalRoutes:
     def reset(self) -> None:
         """From now on what is seen free is free."""
         self._trusts_sight = True
+
+    def _kept_out(self, cells: Cells, frame: Frame) -> Cells:
+        """The map with obstacles where the mask keeps out."""
+        if self._keep_out is None or not cells.size:
+            return cells
+        (mask, mask_from_map), (resolution, (x, y)) = self._keep_out, frame
+        rows, columns = np.indices(cells.shape).reshape(2, -1)
+        centres = np.column_stack(((columns + 0.5) * resolution + x, (rows + 0.5) * resolution + y))
+        out = (mask.at(transform(mask_from_map, centres)) >= KEPT_OUT).reshape(cells.shape)
+        return np.where(out, np.int8(100), cells)
 
     def _on_map(self, mask: NDArray[np.bool_]) -> NDArray[np.int64]:
         """(n, 2) rows and columns of the map on which the layer's cells of a mask lie."""
