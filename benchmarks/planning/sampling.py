@@ -17,6 +17,7 @@ import sys
 import time
 from collections.abc import Callable
 from functools import partial
+from importlib.util import find_spec
 from math import cos, dist, pi, sin
 from pathlib import Path
 from typing import Any
@@ -89,7 +90,7 @@ def own(ground: Ground, cuts: int, query: tuple[Triple, Triple], seed: int) -> W
 
 
 def ompl(ground: Ground, query: tuple[Triple, Triple], seed: int) -> Way | None:
-    """By OMPL's Python wheel, as its own examples use it. Raises ImportError without it."""
+    """By OMPL's Python wheel, as its own examples use it; only where there is one."""
     base, geometric, util = (importlib.import_module(f"ompl.{part}") for part in ("base", "geometric", "util"))
     util.setLogLevel(util.LOG_ERROR)
     free, (rows, columns) = (ground.field.values > 0.0).tolist(), ground.field.values.shape
@@ -147,11 +148,11 @@ def city(name: str, data: Path | None) -> Figures:
         "RRT*": partial(own, ground, 0),
         "RRT*, cut short": partial(own, ground, CUTS),
     }
-    try:
-        ompl(ground, queries[0][0], 0)
-        planners["OMPL RRTstar"] = partial(ompl, ground)
-    except ImportError:
+    if find_spec("ompl") is None:
         sys.stderr.write("uvf: no OMPL: its rows are left out (pip install ompl)\n")
+    else:
+        ompl(ground, queries[0][0], 0)  # once, so that loading it takes none of the time
+        planners["OMPL RRTstar"] = partial(ompl, ground)
     own(ground, CUTS, *queries[0])
     ways = {planner: [find(*asked) for asked in queries] for planner, find in planners.items()}
     peer = ways.get("OMPL RRTstar", [])

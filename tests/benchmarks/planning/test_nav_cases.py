@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.planning import cases as nav
-from benchmarks.planning import curves, recovery
+from benchmarks.planning import curves, recovery, sampling
 from launch.commands.bench_selection import Selection, check_known
 from launch.settings import benchmark_modules
 from uvf.maths.curves.dubins_words import dubins_length
@@ -61,3 +61,59 @@ def test_dubins_lengths_are_compared_with_those_of_the_files(tmp_path, monkeypat
 def test_without_the_data_folder_the_file_is_named(name):
     with pytest.raises(BadInput, match="--data"):
         nav.cases(None, Selection())[name](None)
+
+
+CITY = 60  # cells a side
+
+
+@pytest.fixture
+def city(tmp_path, monkeypatch):
+    folder = tmp_path / "movingai" / "maps" / "cities"
+    folder.mkdir(parents=True)
+    rows = ["".join("@" if 25 <= i < 30 and 10 <= j < 50 else "." for j in range(CITY)) for i in range(CITY)]
+    head = f"type octile\nheight {CITY}\nwidth {CITY}\nmap\n"
+    (folder / "Berlin_0_256.map").write_text(head + "\n".join(rows) + "\n")
+    for name, value in {"SECONDS": 0.15, "PAIRS": 1, "SEEDS": 1}.items():
+        monkeypatch.setattr(sampling, name, value)
+    return tmp_path
+
+
+def test_without_ompl_its_row_is_left_out_and_a_line_says_so(city, monkeypatch, capsys):
+    monkeypatch.setattr(sampling, "find_spec", lambda name: None)
+    rows = nav.cases(city, Selection())["sampling:Berlin_0_256"](city)
+    assert set(rows) == {"sampling: Berlin_0_256: RRT*", "sampling: Berlin_0_256: RRT*, cut short"}
+    assert capsys.readouterr().err == "uvf: no OMPL: its rows are left out (pip install ompl)\n"
+    assert all(row["success %"] == 100.0 and row["held %"] == 100.0 and row["median / line"] >= 1.0 for row in rows.values())
+
+
+def test_ompl_is_measured_on_the_same_queries_where_there_is_one(city, monkeypatch):
+    """A stand-in that drives half as far again as UVF's way does."""
+    monkeypatch.setattr(sampling, "find_spec", lambda name: object())
+
+    def longer(ground, query, seed):
+        length, places = sampling.own(ground, 0, query, seed)
+        return 1.5 * length, places
+
+    monkeypatch.setattr(sampling, "ompl", longer)
+    rows = nav.cases(city, Selection())["sampling:Berlin_0_256"](city)
+    assert rows["sampling: Berlin_0_256: RRT*"]["peer"] == pytest.approx(1 / 1.5, rel=0.1)
+    assert rows["sampling: Berlin_0_256: OMPL RRTstar"]["peer"] == 1.0
+
+
+def test_the_check_of_ways_sees_obstacles_tight_turns_and_wrong_ends():
+    occupied = np.zeros((40, 40), dtype=bool)
+    occupied[20, 20] = True
+    ground = sampling.Ground(sampling.clearance_field(occupied, 1.0), sampling.disc(0.0))
+    x = np.arange(5.0, 35.0, 0.1)
+    free, blocked = (np.column_stack((x, np.full(len(x), y), np.zeros(len(x)))) for y in (10.5, 20.5))
+
+    def query(way):
+        return tuple(map(tuple, way[[0, -1]]))
+
+    assert sampling.holds(ground, query(free), free)
+    assert not sampling.holds(ground, query(blocked), blocked)
+    assert not sampling.holds(ground, query(free), free[:-1])
+    assert not sampling.holds(ground, query(free), free[::2])
+    tight = free.copy()
+    tight[100:, 2] = 0.1
+    assert not sampling.holds(ground, query(free), tight)

@@ -21,6 +21,8 @@ from uvf.planning.flight.planner import DubinsAirplanePath, FlightLimits
 Floats = NDArray[np.float64]
 
 DECIMALS = 2  # of metres
+PLANNED = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Shares of what the planned heights differ by from an even climb, in the order in which they are tried."""
 EXITS = 24  # places on a circle from which the way on is tested
 
 
@@ -67,16 +69,33 @@ class _Flown:
 def flight_items(path: DubinsAirplanePath, airspace: Airspace, limits: FlightLimits, turns: FlownTurns) -> list[Waypoint] | None:
     """Mission items (x east, y north) from the path's start, which is none of them, to its goal; None where a way between is not clear.
 
-    Nodes that are not needed are left out. A climb that is too steep becomes an ``orbit`` to altitude, before it or behind a descent.
+    Nodes that are not needed are left out. The heights of the others are as near as they may be to an even climb from start to goal, since
+    the search only looks for a short way over ground. A climb that is too steep becomes an ``orbit`` to altitude, before it or behind a
+    descent.
     """
-    flown, items = _Flown(airspace, space_of(airspace), limits, turns), list[Waypoint]()
-    nodes: list[Configuration] = [(x, y, height, course) for x, y, height, course in path.waypoints.tolist()]
-    here, last = 0, len(nodes) - 1
+    flown = _Flown(airspace, space_of(airspace), limits, turns)
+    for may_circle in (False, True):
+        for share in PLANNED:
+            if (items := _items(flown, _levelled(path.waypoints, share), may_circle)) is not None:
+                return items
+    return None
+
+
+def _levelled(nodes: Floats, planned: float) -> list[Configuration]:
+    """Nodes (n, 4) with heights between those of an even climb (``planned`` 0) and their own (1)."""
+    along = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(nodes[:, :2], axis=0).T))))
+    even = nodes[0, 2] + (nodes[-1, 2] - nodes[0, 2]) * along / max(along[-1], 1e-9)
+    heights = even + planned * (nodes[:, 2] - even)
+    return [(x, y, height, course) for (x, y, _, course), height in zip(nodes.tolist(), heights.tolist(), strict=True)]
+
+
+def _items(flown: _Flown, nodes: list[Configuration], may_circle: bool) -> list[Waypoint] | None:
+    items, here, last = list[Waypoint](), 0, len(nodes) - 1
     while here < last:
         ahead = next((k for k in range(last, here, -1) if flown.is_open(nodes[here], nodes[k])), None)
         if ahead is not None:
             items.append(waypoint(nodes[ahead]))
-        elif (circled := _circled(flown, nodes[here], nodes[here + 1])) is not None:
+        elif may_circle and (circled := _circled(flown, nodes[here], nodes[here + 1])) is not None:
             items += circled
         else:
             return None
