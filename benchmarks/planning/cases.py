@@ -6,7 +6,7 @@
 from functools import partial
 from pathlib import Path
 
-from benchmarks.planning import coverage, curves, movingai, nav2maps, recovery, sampling, survey_flown
+from benchmarks.planning import coverage, curves, goals, movingai, nav2maps, recovery, sampling, survey_flown
 from benchmarks.planning.barn import cases as barn
 from launch.commands.bench import Case, Figures
 from launch.commands.bench_selection import Selection
@@ -19,13 +19,14 @@ MEASURED = {
     "recovery": recovery.measure,
 }
 """By case: a function of the selection and the data folder that returns rows."""
-OPTIONS = {"barn": barn.OPTIONS, "dynabarn": barn.OPTIONS, "recovery": recovery.OPTIONS}
+OPTIONS = {"barn": barn.OPTIONS, "dynabarn": barn.OPTIONS, "recovery": recovery.OPTIONS} | dict.fromkeys(goals.CASES, goals.OPTIONS)
 
 
 def cases(data: Path | None, selection: Selection) -> dict[str, Case]:
     """The cases with the runs that were selected."""
     found: dict[str, Case] = {name: partial(measure, selection) for name, measure in MEASURED.items()}
     found |= {"dubins": partial(_named, "dubins", curves.measure), "survey": partial(_named, "survey", survey_flown.measure)}
+    found |= goals.cases(selection)
     for group, inner in (("coverage", coverage.cases(data)), ("sampling", sampling.CITIES)):
         found |= {f"{group}:{name}": partial(_named, group, case) for name, case in inner.items()}
     return found
