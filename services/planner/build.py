@@ -3,7 +3,8 @@
 import numpy as np
 
 from services.planner.params import PlannerParams
-from services.planner.planner_service import PlannedVehicle, PlannerService
+from services.planner.planned_vehicle import PlannedVehicle
+from services.planner.planner_service import PlannerService
 from services.planner.scan_placing import ScanPlacer
 from services.planner.tracker_service import FARTHEST, TrackerParams, TrackerService
 from uvf.maths.rotations import from_euler

@@ -1,9 +1,15 @@
 """What planner and tracker say to each other, as messages and as the library has it."""
 
-from schemas.messages import NavDirective, NavReport
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.messages import NavDirective, NavReport, Pose, PosesInFrame, Vector3
+from uvf.maths.se2 import Pose2, transform
 from uvf.planning.local.controller import Drive
 from uvf.planning.navigation.directive import Action, Directive, Report
-from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.convert import planar_pose, stamp
+
+Floats = NDArray[np.float64]
 
 ACTIONS = {
     Action.STOP: NavDirective.STOP,
@@ -48,3 +54,22 @@ def report_of(message: NavReport | None) -> Report:
     if message is None:
         return NOTHING_DONE
     return Report(message.number, _DRIVES_SAID.get(message.drive, Drive.NO_PATH), message.done, message.impossible)
+
+
+def path_message(t: float, directive: Directive, world_from_map: Pose2) -> PosesInFrame:
+    """The path to follow at ``t`` [s], in the world frame, or an empty one.
+
+    Its last pose has an orientation when a heading is wanted there; the others are the line's points.
+    """
+    message = PosesInFrame(timestamp=stamp(t), frame_id="world")
+    if directive.action == Action.FOLLOW:
+        message.poses.extend(line_of(world_from_map, directive.path))
+        if directive.heading is not None:
+            end = message.poses[-1].position
+            message.poses[-1].CopyFrom(planar_pose(end.x, end.y, directive.heading + world_from_map[2]))
+    return message
+
+
+def line_of(world_from_map: Pose2, path: Floats) -> list[Pose]:
+    """Points (n, 2) [m, map] as poses in the world frame, without a heading."""
+    return [Pose(position=Vector3(x=x, y=y)) for x, y in transform(world_from_map, path).tolist()]

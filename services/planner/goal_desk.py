@@ -2,16 +2,13 @@
 
 from math import inf
 
-import numpy as np
-from numpy.typing import NDArray
-
-from schemas.messages import Fence, Pose, PreviewReply, PreviewRequest, Vector3
-from uvf.maths.se2 import Pose2, compose, inverse, transform
+from schemas.messages import Fence, PreviewReply, PreviewRequest, Vector3
+from services.planner.directives import line_of
+from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.planning.global_planner import GlobalPlanner
 from uvf.planning.smoothing import length
 from uvf.runtime.messages.fences import fencing
 
-Floats = NDArray[np.float64]
 Point = tuple[float, float]
 
 PREVIEWS = 4  # answered in a step; each costs a search
@@ -61,8 +58,3 @@ class GoalDesk:
             return f"the goal is {-room:.1f} m outside of the fence"
         needed = self._planner.body.footprint.circumscribed_radius
         return f"the goal is {room:.2f} m from the fence, too near" if room < needed else ""
-
-
-def line_of(world_from_map: Pose2, path: Floats) -> list[Pose]:
-    """Points (n, 2) [m, map] as poses in the world frame, without a heading."""
-    return [Pose(position=Vector3(x=x, y=y)) for x, y in transform(world_from_map, path).tolist()]

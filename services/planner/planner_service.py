@@ -1,6 +1,5 @@
 """Map, pose and job -> what the tracker is to do, four times a second: a path to follow, or a recovery."""
 
-from dataclasses import dataclass
 from math import hypot, inf, isfinite, isinf, isnan
 
 import numpy as np
@@ -29,26 +28,25 @@ from schemas.messages import (
     Reply,
     VehicleStatus,
 )
-from services.planner.directives import directive_message, report_of
-from services.planner.goal_desk import GoalDesk, line_of
+from services.planner.directives import directive_message, path_message, report_of
+from services.planner.goal_desk import GoalDesk
 from services.planner.jobs import IDLE, Goal, Job, Orders, ReturnPoints, choose, home_of, mission_target, not_now
 from services.planner.params import PlannerParams
-from services.planner.scan_placing import ScanPlacer
+from services.planner.planned_vehicle import PlannedVehicle
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse, transform
-from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
 from uvf.planning.exploration import Explorer, Patrol
 from uvf.planning.frontiers import FrontierWeights
 from uvf.planning.global_planner import NO_PLACE, GlobalPlanner, PlannedBody
-from uvf.planning.navigation.directive import Action, Directive
+from uvf.planning.navigation.directive import Directive
 from uvf.planning.navigation.global_routes import GlobalRoutes
 from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings, Status
 from uvf.planning.navigation.progress import ProgressSettings
 from uvf.runtime.contract.declaration import Reads, Writes, answers, call, every, optional, replies, request, topic
 from uvf.runtime.contract.service import Answer, Service
-from uvf.runtime.messages.convert import occupancy_cells, planar_pose, pose2_of, seconds, stamp
+from uvf.runtime.messages.convert import occupancy_cells, pose2_of, seconds, stamp
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
@@ -66,16 +64,6 @@ STATES = {
     Status.ABORTED: NavStatus.BLOCKED,
     Status.CANCELLED: NavStatus.CANCELLED,
 }
-
-
-@dataclass(frozen=True)
-class PlannedVehicle:
-    """What the planner has to know of its vehicle: outline, lidar, speed on straight parts [m/s], and whether it explores."""
-
-    footprint: RobotFootprint
-    placer: ScanPlacer
-    speed: float
-    explores: bool
 
 
 class PlannerService(Service):
@@ -180,7 +168,7 @@ class PlannerService(Service):
         asks, self._asks = self._asks, []
         return self.Outputs(
             directive=directive_message(t, directive),
-            path=self._path(t, directive),
+            path=path_message(t, directive, self._world_from_map),
             nav_status=self._nav_status(t),
             events=events,
             set_mode=asks,
@@ -375,16 +363,6 @@ class PlannerService(Service):
         for at, text in log[self._told :]:
             self._tell(at, text, self._job.name)
         self._told = len(log)
-
-    def _path(self, t: float, directive: Directive) -> PosesInFrame:
-        """The last pose has an orientation when a heading is wanted there; the others are the line's points."""
-        message = PosesInFrame(timestamp=stamp(t), frame_id="world")
-        if directive.action == Action.FOLLOW:
-            message.poses.extend(line_of(self._world_from_map, directive.path))
-            if directive.heading is not None:
-                end = message.poses[-1].position
-                message.poses[-1].CopyFrom(planar_pose(end.x, end.y, directive.heading + self._world_from_map[2]))
-        return message
 
     def _nav_status(self, t: float) -> NavStatus:
         told = self._navigator.feedback

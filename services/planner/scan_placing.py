@@ -16,6 +16,7 @@ Floats = NDArray[np.float64]
 
 HISTORY = 100  # poses kept, 2 s: a sweep may take one
 MOST_BEAMS = 1440
+MOST = 1000.0  # m, beyond which no lidar sees
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,7 @@ class ScanPlacer:
         if taken_at <= self.t or pose is None:
             return None
         ranges, rays = scan_rays(scan)
+        ranges = np.where((ranges > 0.0) & (ranges < MOST), ranges, 0.0)
         ends = np.where(ranges > 0.0, ranges, self.farthest)[:, None] * rays
         base_from_frame, points = inverse(pose), np.empty_like(ends)
         for at, beams in self._sweeping.parts(len(ranges), seconds(scan.timestamp)):

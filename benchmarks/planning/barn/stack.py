@@ -26,9 +26,14 @@ Floats = NDArray[np.float64]
 
 SIZE = 24.0  # m, of the window that paths are planned over
 REPLAN = 0.2  # s
+PATIENCE, OSCILLATION_TIME = 6.0, 40.0  # s: who makes way for what moves stands and goes back now and then
 STACK_LIMITS = Limits(
     min_speed=-0.5, max_speed=1.4, max_turn_rate=2.0, acceleration=2.5, angular_acceleration=6.0, lateral_acceleration=1.5
 )
+EVASION_LIMITS = Limits(
+    min_speed=-2.0, max_speed=2.0, max_turn_rate=3.0, acceleration=4.0, angular_acceleration=10.0, lateral_acceleration=3.5
+)
+"""What the Jackal can do; at the most across it slides at 0.9 m/s, which its odometry does not tell, and evades all the better."""
 DWA_LIMITS = Limits(0.1, 0.5, 1.57, 10.0, 20.0, 10.0)
 MOVE_BASE_HALF, MOVE_BASE_PADDING = (0.21, 0.165), 0.1  # m
 """What move_base has on the Jackal: jackal_helper/configs/params of the challenge."""
@@ -59,12 +64,12 @@ class MaplessStack:
     def __init__(self, scanner: Scanner, controller: LocalController) -> None:
         self._beams = Beams.of(scanner)
         self.executor = Executor(controller)
-        progress = ProgressSettings()
+        progress = ProgressSettings(movement_time_allowance=PATIENCE, oscillation_time=OSCILLATION_TIME)
         settings = NavigatorSettings(
             replan_period=REPLAN, circumscribed_radius=controller.footprint.circumscribed_radius, progress=progress
         )
         self.navigator = Navigator(LayerRoutes(controller), settings)
-        self._goal: NavigationGoal | None = None
+        self._goal = NavigationGoal(0.0, 0.0)
 
     def reset(self, goal_in_odom: Pose2) -> None:
         """Takes a goal."""
@@ -75,9 +80,8 @@ class MaplessStack:
         controller = self.executor.controller
         points = self._beams.points(ranges, controller.settings.obstacle_range)
         controller.see(t, odom_from_base, self._beams.eye, points, ranges)
-        if self._goal is not None:
+        if not self.navigator.is_busy:  # a goal that was given up is tried again: what moves frees the way sooner or later
             self.navigator.start(t, self._goal)
-            self._goal = None
         directive = self.navigator.step(t, odom_from_base, self.executor.report)
         return self.executor.step(t, odom_from_base, (velocity.linear, velocity.angular), directive)
 
@@ -95,4 +99,5 @@ def stack_of(name: str, briefing: Briefing) -> MaplessStack:
     """The stack with the local planner of a name as it is by default."""
     footprint = RobotFootprint.polygon(briefing.robot.footprint)
     planner = make_local_planner(name, STACK_LIMITS, footprint, briefing.seed)
-    return MaplessStack(briefing.robot.scanner, LocalController(footprint, STACK_LIMITS, planner, ControllerSettings(size=SIZE)))
+    settings = ControllerSettings(size=SIZE, evasion=EVASION_LIMITS)
+    return MaplessStack(briefing.robot.scanner, LocalController(footprint, STACK_LIMITS, planner, settings))

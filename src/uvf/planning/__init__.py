@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from uvf.planning.exploration import Explorer as Explorer
     from uvf.planning.global_planner import GlobalPlanner as GlobalPlanner
     from uvf.planning.global_planner import PlannedBody as PlannedBody
+    from uvf.planning.global_planners.planner import GlobalPlannerSettings as GlobalPlannerSettings
+    from uvf.planning.global_planners.planner import PathQuery as PathQuery
+    from uvf.planning.global_planners.planners import make_global_planner as make_global_planner
     from uvf.planning.search.grid_search import GridSearch as GridSearch
 
 OFFERED = {
@@ -24,6 +27,9 @@ OFFERED = {
     "RobotFootprint": "uvf.planning.costmap.footprint:RobotFootprint",
     "GlobalPlanner": "uvf.planning.global_planner:GlobalPlanner",
     "PlannedBody": "uvf.planning.global_planner:PlannedBody",
+    "make_global_planner": "uvf.planning.global_planners.planners:make_global_planner",
+    "PathQuery": "uvf.planning.global_planners.planner:PathQuery",
+    "GlobalPlannerSettings": "uvf.planning.global_planners.planner:GlobalPlannerSettings",
     "Explorer": "uvf.planning.exploration:Explorer",
 }
 __all__ = list(OFFERED)

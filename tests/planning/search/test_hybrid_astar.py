@@ -9,10 +9,10 @@ import pytest
 from tests.planning.search.driving import CAR, SIDE, blocks, check_turns, costmap, covered, filled_in
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import cost_factors
-from uvf.planning.search.hybrid_astar import HybridAStar, VehicleMotion
+from uvf.planning.search.hybrid_astar import HybridAStar, SteeredVehicle
 
 RADIUS = 0.8
-FORWARDS, BOTH = VehicleMotion(RADIUS, False), VehicleMotion(RADIUS, True)
+FORWARDS, BOTH = SteeredVehicle(RADIUS, False), SteeredVehicle(RADIUS, True)
 VEHICLES = pytest.mark.parametrize("vehicle", [FORWARDS, BOTH], ids=["dubins", "reeds_shepp"])
 QUERY = (1.5, 1.5, 0.4), (18.4, 10.4, -0.9)
 GROWN = 0.3 * SIDE
@@ -80,7 +80,7 @@ def test_only_who_reverses_gets_out_of_a_dead_end():
 
 
 def test_reversing_costs_what_it_is_said_to():
-    search = planner(np.zeros((60, 160)), VehicleMotion(RADIUS, True, reverse_penalty=3.0))
+    search = planner(np.zeros((60, 160)), SteeredVehicle(RADIUS, True, reverse_penalty=3.0))
     plan = search.plan((8.0, 3.0, 0.0), (7.0, 3.0, 0.0))
     assert plan.cost == pytest.approx(3.0, rel=1e-3) and (plan.direction == -1.0).all()
 
@@ -199,7 +199,7 @@ def test_odd_outlines(vehicle, footprint):
 
 @VEHICLES
 def test_a_map_far_from_the_origin_and_a_turning_radius_below_a_cell(vehicle):
-    small = VehicleMotion(0.02, vehicle.reverses)
+    small = SteeredVehicle(0.02, vehicle.reverses)
     costs = costmap(blocks(3), CAR, (-1000.0, 500.0))
     query = tuple((x - 1000.0, y + 500.0, yaw) for x, y, yaw in QUERY)
     check(costs, small, HybridAStar(costs, cost_factors(2.0), small).plan(*query), query, exact=False)
@@ -230,8 +230,8 @@ def test_what_is_no_pose_is_an_error(at):
 
 def test_figures_that_make_no_sense_are_errors():
     with pytest.raises(ValueError, match="turning radius"):
-        VehicleMotion(0.0, True)
+        SteeredVehicle(0.0, True)
     with pytest.raises(ValueError, match=r"reverse_penalty: 0\.5"):
-        VehicleMotion(1.0, True, reverse_penalty=0.5)
+        SteeredVehicle(1.0, True, reverse_penalty=0.5)
     with pytest.raises(ValueError, match="256 finite numbers"):
         HybridAStar(costmap(np.zeros((9, 9))), np.full(256, np.nan), BOTH)

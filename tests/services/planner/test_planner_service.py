@@ -22,7 +22,8 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.planner.params import PlannerParams
-from services.planner.planner_service import PlannedVehicle, PlannerService
+from services.planner.planned_vehicle import PlannedVehicle
+from services.planner.planner_service import PlannerService
 from services.planner.scan_placing import ScanPlacer
 from services.planner.tracker_service import FARTHEST
 from tests.runtime.stepping import recall, stale, stepped

@@ -21,7 +21,9 @@ Mask = NDArray[np.bool_]
 Point = tuple[float, float]
 Frame = tuple[float, float, float]
 
+BEYOND = 1.5  # times the window's side, where beams are cut off
 LATELY = 1.0  # s
+SWING, MOST_SWING = 0.025, 0.25  # m/m, m
 LONG_AGO = -(2**30)  # ms
 
 
@@ -66,14 +68,19 @@ def clear_beams(cells: Bytes, freed: Stamps, hit: Stamps, frame: Frame, beams: t
 
 
 @compiled
-def stand_on(freed: Stamps, frame: Frame, points: Floats, since: int) -> Mask:
-    """(n,) whether the cells of the points (n, 2) [m] and all their neighbours were seen free after ``since`` [ms]; never off the grid."""
+def stand_on(freed: Stamps, frame: Frame, eye: Point, points: Floats, since: int) -> Mask:
+    """(n,) whether the cells of the points (n, 2) [m] and those next to them were seen free after ``since`` [ms]; never off the grid.
+
+    The farther from the eye, the more cells about a point count: a heading that is late by a few milliseconds swings what is far.
+    """
     rows, columns = freed.shape
     found = np.zeros(points.shape[0], dtype=np.bool_)
     for k in range(points.shape[0]):
         r, c = int(np.floor((points[k, 1] - frame[1]) / frame[2])), int(np.floor((points[k, 0] - frame[0]) / frame[2]))
-        if 0 < r < rows - 1 and 0 < c < columns - 1:
-            found[k] = freed[r - 1 : r + 2, c - 1 : c + 2].min() > since
+        away = np.hypot(points[k, 0] - eye[0], points[k, 1] - eye[1])
+        n = 1 + int(np.ceil(min(SWING * away, MOST_SWING) / frame[2]))
+        if n <= r < rows - n and n <= c < columns - n:
+            found[k] = freed[r - n : r + n + 1, c - n : c + n + 1].min() > since
     return found
 
 
@@ -131,17 +138,20 @@ class ObstacleLayer:
         """Marks the beams' ends and clears along them; what is not finite is left out."""
         self._begun = seen.t if self._count == 0 else self._begun
         self._count += 1
-        whole = np.isfinite(seen.ends).all(axis=1)
+        away = seen.ends - np.array(seen.eye)
+        distances, reach = np.hypot(away[:, 0], away[:, 1]), BEYOND * self.resolution * len(self.cells)
+        whole, inside = np.isfinite(distances), distances <= reach
+        ends = np.array(seen.eye) + away[whole] * np.minimum(reach / np.maximum(distances[whole], reach), 1.0)[:, None]
         frame = (*self.origin, self.resolution)
-        mark_ends(self.cells, self._seen, self._hit, frame, seen.ends[whole & seen.hits], (seen.age, self._count))
-        clear_beams(self.cells, self._freed, self._hit, frame, (seen.eye, seen.ends[whole]), (self._ms(seen.t), self._count))
+        mark_ends(self.cells, self._seen, self._hit, frame, seen.ends[whole & inside & seen.hits], (seen.age, self._count))
+        clear_beams(self.cells, self._freed, self._hit, frame, (seen.eye, ends), (self._ms(seen.t), self._count))
 
-    def lately_free(self, t: float, points: Floats) -> Mask:
-        """(n,) whether something that ends beams at the points (n, 2) [m] at ``t`` [s] has come there.
+    def lately_free(self, t: float, eye: Point, points: Floats) -> Mask:
+        """(n,) whether something that ends beams from ``eye`` at the points (n, 2) [m] at ``t`` [s] has come there.
 
         The ground there and next to it was seen free within the second before; so it was not where a wall only comes into view.
         """
-        return stand_on(self._freed, (*self.origin, self.resolution), points, self._ms(t - LATELY))
+        return stand_on(self._freed, (*self.origin, self.resolution), eye, points, self._ms(t - LATELY))
 
     def _ms(self, t: float) -> int:
         """Time since the first observation [ms]."""
@@ -160,6 +170,15 @@ class ObstacleLayer:
         found = np.argwhere(self.cells[rows, columns] == LETHAL) + np.array((rows.start, columns.start))
         out: Floats = (found[:, ::-1] + 0.5) * self.resolution + np.array(self.origin)
         return out
+
+    def free_disc(self, centre: Point, radius: float) -> None:
+        """Frees the obstacle cells whose middle lies within ``radius`` [m] of ``centre`` [m]: something that moves is there now."""
+        n, reach = len(self.cells), radius / self.resolution
+        row, column = ((at - corner) / self.resolution - 0.5 for at, corner in zip(centre[::-1], self.origin[::-1], strict=True))
+        top, left = (min(max(int(np.floor(at - reach)), 0), n) for at in (row, column))
+        part = self.cells[top : max(int(row + reach) + 2, 0), left : max(int(column + reach) + 2, 0)]
+        down, across = np.ogrid[: part.shape[0], : part.shape[1]]
+        part[(np.hypot(down + top - row, across + left - column) <= reach) & (part == LETHAL)] = FREE_SPACE
 
     def has_room(self, place: Point, radius: float) -> bool:
         """Whether no obstacle lies within ``radius`` [m] of a place [m]."""

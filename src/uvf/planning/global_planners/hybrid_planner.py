@@ -8,7 +8,7 @@ from uvf.planning.costmap.headings import heading_bin
 from uvf.planning.global_planners.planner import GlobalPath, GlobalPlannerSettings, PathQuery, Refusal
 from uvf.planning.global_planners.planning_grid import PlanningGrid
 from uvf.planning.search.hybrid_astar import GIVEN_UP, TOUCHES, HybridAStar
-from uvf.planning.search.motion_primitives import VehicleMotion
+from uvf.planning.search.motion_primitives import SteeredVehicle
 
 
 class HybridPlanner:
@@ -17,7 +17,7 @@ class HybridPlanner:
     def __init__(self, costs: Costmap, settings: GlobalPlannerSettings, reverses: bool) -> None:
         """``reverses``: curves of Reeds and Shepp, else of Dubins. Raises ValueError for a costmap without cells, or with too many."""
         self._grid = PlanningGrid(costs, settings)
-        self._search = HybridAStar(costs, self._grid.factors, VehicleMotion(settings.minimum_turning_radius, reverses))
+        self._search = HybridAStar(costs, self._grid.factors, SteeredVehicle(settings.minimum_turning_radius, reverses))
 
     def plan(self, query: PathQuery) -> GlobalPath:
         """The path from start to goal; it ends within the goal's cell and 1/64 of a turn where no curve leads to it exactly."""

@@ -18,12 +18,15 @@ from uvf.planning.local.goal_checker import GoalChecker, GoalTolerances, turn_to
 from uvf.planning.local.planner import STOP, Limits, LocalPlanner, LocalSituation, State, within
 from uvf.planning.local.swept_stop import safe_share
 from uvf.planning.local.window import WindowSettings, local_window
-from uvf.planning.moving.tracks import MovingObjects, SeenFrom
+from uvf.planning.moving.tracks import BESIDE, MovingObjects, SeenFrom
 
 Floats = NDArray[np.float64]
 
+FAST = 0.4  # m/s, what moves slower is stopped for
+EDGE = 0.05  # m beyond its radius within which a point belongs to what moves
 LEAVING_COST = 30.0
 """Factor on the cost of ground within the inscribed radius of an obstacle, when it has to be left."""
+EVADED = 6.0  # m within which what moves may have to be evaded
 NEAR = 4.0  # m, farther points cannot be reached before the next scan
 REMEMBERED = 1.0  # m within which the stop heeds obstacles that are out of view
 TURN_COUNTS = 0.3  # m/rad
@@ -50,6 +53,9 @@ class ControllerSettings:
     braking: float = 4.0  # m/s^2
     angular_braking: float = 10.0  # rad/s^2
     goal: GoalTolerances = field(default_factory=GoalTolerances)
+    evasion: Limits | None = None
+    """Limits while something moves near by, for a vehicle that may evade: what it can do, not what is asked of it. It then leaves what
+    moves fast to the local planner; one that may not stops for it as for anything else."""
 
 
 class Drive(Enum):
@@ -97,7 +103,7 @@ class LocalController:
         ends = transform(pose, points)
         (x, y), *_ = transform(pose, np.array((eye,))).tolist()
         self.layer.recentre((pose[0], pose[1]))
-        moves = self.moving.observe(t, ends, ranges, SeenFrom((x, y), self.layer.lately_free(t, ends)))
+        moves = self.moving.observe(t, ends, ranges, SeenFrom((x, y), self.layer.lately_free(t, (x, y), ends)))
         hits = (ranges > 0.0) & (ranges <= self.settings.obstacle_range) & ~moves
         far = np.maximum(ranges, 1e-9) > self.settings.obstacle_range
         if far.any():
@@ -106,8 +112,23 @@ class LocalController:
         self._travel(pose)
         self.layer.observe(BeamObservation(t, self._odometer, (x, y), ends, hits))
         self.layer.forget(self._odometer)
-        near = points[(ranges > 0.0) & (np.abs(points) <= NEAR).all(axis=1)]
+        for mx, my, _, _, radius in self.moving.moving():  # it was marked before it was known to move
+            self.layer.free_disc((mx, my), radius + BESIDE)
+        near = points[(ranges > 0.0) & ~self._evaded(ends) & (np.abs(points) <= NEAR).all(axis=1)]
         self._near = np.concatenate((near, transform(inverse(pose), self.layer.lethal_near((pose[0], pose[1]), REMEMBERED))))
+
+    def _evaded(self, ends: Floats) -> NDArray[np.bool_]:
+        """Mask (n,) of the points that belong to what moves so fast that the stop would not help against it: it hits who stands.
+
+        The local planner evades it. Braking in its way would be worse, and so would be braking for what is about to pass.
+        """
+        out = np.zeros(len(ends), dtype=np.bool_)
+        if self.settings.evasion is None:
+            return out
+        for x, y, vx, vy, radius in self.moving.moving():
+            if hypot(vx, vy) >= FAST:
+                out |= (ends[:, 0] - x) ** 2 + (ends[:, 1] - y) ** 2 < (radius + EDGE) ** 2
+        return out
 
     def _travel(self, pose: Pose2) -> None:
         """What is remembered is known the worse the farther the vehicle has come since: odometry drifts by the way, not by time."""
@@ -138,19 +159,32 @@ class LocalController:
 
         heading: [rad, the poses' frame] to turn to at the path's end; None = any.
         """
-        settings = self.settings
         if len(path) == 0:
             self._last = STOP
             return DriveResult(*STOP, Drive.NO_PATH)
-        state = self._ahead(pose, velocity)
+        state = self._ahead(pose, velocity, self._limits_now(pose))
         if self._goal.at_place(state, (float(path[-1, 0]), float(path[-1, 1]))):
             return self._at_goal(state, velocity, heading)
+        return self._along(pose, velocity, path)
+
+    def hold(self, pose: Pose2, velocity: tuple[float, float]) -> tuple[float, float]:
+        """Stands, as long as nothing that moves comes near; a vehicle that may evade makes way for it."""
+        if self.settings.evasion is None or not self._is_among_moving(pose):
+            return self.halt()
+        result = self._along(pose, velocity, np.array((pose[:2],)))
+        return result.speed, result.turn_rate
+
+    def _along(self, pose: Pose2, velocity: tuple[float, float], path: Floats) -> DriveResult:
+        settings, limits = self.settings, self._limits_now(pose)
+        state = self._ahead(pose, velocity, limits)
+        obstacles = self.moving.moving()
+        obstacles[:, :2] += settings.delay * obstacles[:, 2:4]
         costs = self.leaving(self.costmap(settings.window.size + 1.0), pose)
         grids = local_window(costs, (pose[0], pose[1]), path, self._factors, settings.window)
-        wanted = self.planner.command(LocalSituation(state, grids, path, self.moving.moving()))
+        wanted = self.planner.command(LocalSituation(state, grids, path, obstacles, limits))
         if wanted is None:
-            return DriveResult(*self._reach(state, velocity, STOP), Drive.NO_VALID_CONTROL)
-        stopped = self._reach(state, velocity, wanted) == STOP and wanted != STOP
+            return DriveResult(*self._reach(state, velocity, STOP, limits), Drive.NO_VALID_CONTROL)
+        stopped = self._reach(state, velocity, wanted, limits) == STOP and wanted != STOP
         return DriveResult(*self._last, Drive.STOPPED if stopped else Drive.DRIVING)
 
     def halt(self) -> tuple[float, float]:
@@ -160,10 +194,17 @@ class LocalController:
 
     def move(self, pose: Pose2, velocity: tuple[float, float], wanted: tuple[float, float]) -> tuple[float, float]:
         """A wanted velocity (m/s, rad/s) within the limits of acceleration; the stop has the last word."""
-        return self._reach(self._ahead(pose, velocity), velocity, wanted)
+        return self._reach(self._ahead(pose, velocity, self.limits), velocity, wanted, self.limits)
 
-    def _reach(self, state: State, velocity: tuple[float, float], wanted: tuple[float, float]) -> tuple[float, float]:
-        reached = within(self.limits, state, wanted, self.settings.period)
+    def _is_among_moving(self, pose: Pose2) -> bool:
+        obstacles = self.moving.moving()
+        return bool((np.hypot(obstacles[:, 0] - pose[0], obstacles[:, 1] - pose[1]) <= EVADED).any())
+
+    def _limits_now(self, pose: Pose2) -> Limits:
+        return self.settings.evasion if self.settings.evasion is not None and self._is_among_moving(pose) else self.limits
+
+    def _reach(self, state: State, velocity: tuple[float, float], wanted: tuple[float, float], limits: Limits) -> tuple[float, float]:
+        reached = within(limits, state, wanted, self.settings.period)
         self._last = self.made_safe(reached, velocity)
         return self._last
 
@@ -173,7 +214,7 @@ class LocalController:
             wanted = STOP
         else:
             wanted = turn_to_heading(state, heading, self.limits)
-        if self._reach(state, velocity, wanted) == STOP and wanted != STOP:
+        if self._reach(state, velocity, wanted, self.limits) == STOP and wanted != STOP:
             return DriveResult(*STOP, Drive.STOPPED)
         return DriveResult(*self._last, Drive.ARRIVED if there else Drive.DRIVING)
 
@@ -192,13 +233,13 @@ class LocalController:
         )
         return share * wanted[0], share * wanted[1]
 
-    def _ahead(self, pose: Pose2, velocity: tuple[float, float]) -> State:
+    def _ahead(self, pose: Pose2, velocity: tuple[float, float], limits: Limits) -> State:
         """Where the vehicle will be, and how fast, when the command takes effect.
 
         The last command counts as its velocity, as far as the measured one is near: measurements lag behind.
         """
         d, lag = self.settings.delay, 3 * self.settings.period
-        dv, dw = self.limits.acceleration * lag, self.limits.angular_acceleration * lag
+        dv, dw = limits.acceleration * lag, limits.angular_acceleration * lag
         v = min(max(self._last[0], velocity[0] - dv), velocity[0] + dv)
         w = min(max(self._last[1], velocity[1] - dw), velocity[1] + dw)
         middle = pose[2] + w * d / 2

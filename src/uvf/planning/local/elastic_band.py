@@ -26,7 +26,7 @@ LEAP = 0.3
 """Share of its radius that a bubble moves by at most in one round."""
 
 
-class BandRoom(NamedTuple):
+class FreeRoom(NamedTuple):
     """How much room there is in the window."""
 
     distance: Floats
@@ -75,7 +75,7 @@ class ElasticBand:
     def command(self, now: LocalSituation) -> tuple[float, float] | None:
         """Velocity (m/s, rad/s) for now; None where the band is broken: obstacles leave no way beside the path, or its arc touches."""
         occupied = now.grids.values == LETHAL
-        room = BandRoom(distance_field(occupied), now.grids.frame, self._inscribed)
+        room = FreeRoom(distance_field(occupied), now.grids.frame, self._inscribed)
         if not np.array_equal(now.path, self._given):
             self._begin(now.path)
         whole = self._relaxed(now, room)
@@ -93,7 +93,7 @@ class ElasticBand:
         self._given, self._path = path.copy(), resample(path)
         self._laid, self._count = 0, 0
 
-    def _relaxed(self, now: LocalSituation, room: BandRoom) -> bool:
+    def _relaxed(self, now: LocalSituation, room: FreeRoom) -> bool:
         """Moves the band on with the vehicle and lets its forces work; False where it is broken."""
         state = now.state
         if self._count == 0:
@@ -118,7 +118,7 @@ class ElasticBand:
 
 
 @compiled
-def room_at(room: BandRoom, x: float, y: float) -> float:
+def room_at(room: FreeRoom, x: float, y: float) -> float:
     """Distance [m] that the inscribed circle at (x, y) has to the nearest obstacle, between the cells' centres linearly."""
     rows, columns = room.distance.shape
     u = min(max((x - room.frame[0]) / room.frame[2] - 0.5, 0.0), columns - 1.000001)
@@ -132,7 +132,7 @@ def room_at(room: BandRoom, x: float, y: float) -> float:
 
 
 @compiled
-def relaxed(bubbles: Floats, count: int, room: BandRoom, settings: ElasticBandSettings) -> int:
+def relaxed(bubbles: Floats, count: int, room: FreeRoom, settings: ElasticBandSettings) -> int:
     """Lets the forces move the first ``count`` of the bubbles (n, 3), removes and adds some, in place; how many there are then."""
     for i in range(count):
         bubbles[i, 2] = min(room_at(room, bubbles[i, 0], bubbles[i, 1]), settings.largest_bubble)
@@ -162,7 +162,7 @@ def relaxed(bubbles: Floats, count: int, room: BandRoom, settings: ElasticBandSe
 
 
 @compiled
-def _move(bubbles: Floats, i: int, room: BandRoom, settings: ElasticBandSettings) -> None:
+def _move(bubbles: Floats, i: int, room: FreeRoom, settings: ElasticBandSettings) -> None:
     """One bubble by the contraction of the band and the push of obstacles, across the band only (equations 2 to 6)."""
     x, y, radius = bubbles[i, 0], bubbles[i, 1], bubbles[i, 2]
     fx, fy = 0.0, 0.0

@@ -45,7 +45,7 @@ class MppiSettings:
     aside_weight: float = 6.0
     """Of the way that the vehicle would make at full speed in the time that it needs to turn to the way on."""
     turn_weight: float = 0.1  # per largest turn rate
-    near_weight: float = 8.0
+    near_weight: float = 15.0
     fast_weight: float = 6.0
     close_weight: float = 10.0
     heed: float = 1.5  # m to a moving obstacle from which it matters
@@ -62,12 +62,10 @@ class Mppi:
         self._limits, self._outline = limits, (footprint.sides(), footprint.circumscribed_radius)
         self._rng = np.random.default_rng(seed)
         shape = (POOL * settings.samples, settings.steps, 2)
-        spread = (settings.speed_noise * (limits.max_speed - min(limits.min_speed, 0.0)), settings.turn_noise * limits.max_turn_rate)
-        self._noise = (_coloured(self._rng.standard_normal(shape), settings.noise_memory) * spread).astype(np.float32)
+        self._noise = _coloured(self._rng.standard_normal(shape), settings.noise_memory).astype(np.float32)
         self._plan: Floats = np.zeros((settings.steps, 2))
         self._commands = np.empty((settings.samples, settings.steps, 2), dtype=np.float32)
         self._found = np.empty((settings.samples, FEATURES), dtype=np.float32)
-        self._manoeuvres = _manoeuvres(limits, settings)
         self.best: Floats32 = np.zeros(FEATURES, dtype=np.float32)
         """Features of the plan that was chosen last."""
 
@@ -78,21 +76,23 @@ class Mppi:
     def command(self, now: LocalSituation) -> tuple[float, float] | None:
         """Velocity (m/s, rad/s) for now; None where every future ends in a contact at once."""
         settings, grids, start = self.settings, now.grids, now.state
+        limits = now.limits or self._limits
         others = Others(now.obstacles, *self._outline, settings.heed, settings.growth, settings.doubt)
         offset = int(self._rng.integers(0, (POOL - 1) * settings.samples + 1))
-        _draw(self._plan, self._noise, offset, self._manoeuvres, self._commands)
-        _clip(self._commands, self._limits)
-        roll_out(grids, start, self._commands, (settings.step, self._limits), others, self._found)
+        spread = (settings.speed_noise * (limits.max_speed - min(limits.min_speed, 0.0)), settings.turn_noise * limits.max_turn_rate)
+        _draw(self._plan, (self._noise, offset, spread), _manoeuvres(limits, settings), self._commands)
+        _clip(self._commands, limits)
+        roll_out(grids, start, self._commands, (settings.step, limits), others, self._found)
         costs = self._found @ self._weights
         weights = np.exp(-(costs - costs.min()) / settings.temperature)
         _average(self._commands, weights / weights.sum(), self._plan)
         self._smooth()
         chosen = self._plan[None].astype(np.float32)
-        roll_out(grids, start, chosen, (settings.step, self._limits), others, self._found[:1])
+        roll_out(grids, start, chosen, (settings.step, limits), others, self._found[:1])
         if self._found[0, rollout.COLLIDED] > 0.0:  # the average of two ways round may lie between them
             best = int(np.argmin(costs))
             self._plan[:] = self._commands[best]
-            roll_out(grids, start, self._commands[best : best + 1].copy(), (settings.step, self._limits), others, self._found[:1])
+            roll_out(grids, start, self._commands[best : best + 1].copy(), (settings.step, limits), others, self._found[:1])
         self.best = self._found[0].copy()
         speed, turn = float(self._plan[0, 0]), float(self._plan[0, 1])
         self._plan[:-1] = self._plan[1:]
@@ -144,8 +144,9 @@ def _coloured(white: Floats, memory: float) -> Floats:
 
 
 @compiled
-def _draw(plan: Floats, noise: Floats32, offset: int, manoeuvres: Floats32, out: Floats32) -> None:
-    """The last plan itself, the manoeuvres, and the plan with noise."""
+def _draw(plan: Floats, noises: tuple[Floats32, int, tuple[float, float]], manoeuvres: Floats32, out: Floats32) -> None:
+    """The last plan itself, the manoeuvres, and the plan with noise: (of unit deviation, the row to begin with, deviations)."""
+    noise, offset, spread = noises
     samples, steps = out.shape[0], out.shape[1]
     for k in range(samples):
         for i in range(steps):
@@ -155,7 +156,7 @@ def _draw(plan: Floats, noise: Floats32, offset: int, manoeuvres: Floats32, out:
                 elif k <= manoeuvres.shape[0]:
                     out[k, i, j] = manoeuvres[k - 1, i, j]
                 else:
-                    out[k, i, j] = plan[i, j] + noise[offset + k, i, j]
+                    out[k, i, j] = plan[i, j] + spread[j] * noise[offset + k, i, j]
 
 
 @compiled

@@ -45,6 +45,8 @@ class LocalSituation:
     """(n, 2) m, n >= 1, from the vehicle to the goal."""
     obstacles: Floats = field(default_factory=lambda: NOBODY)
     """(m, 5) what moves: x, y [m], vx, vy [m/s], radius [m]."""
+    limits: Limits | None = None
+    """Those that count now, where they are not the planner's own: a vehicle may do more to evade than it does for its errand."""
 
 
 class LocalPlanner(Protocol):

@@ -39,7 +39,7 @@ FEATURES = 12
 COLLIDED, COST, WORST, TO_GO, MEAN_TO_GO, OFF_PATH, REVERSED, TURNED, NEAR, FAST, CLOSE, ASIDE = range(FEATURES)
 """Columns of what a rollout finds: share of the horizon [0..1] that comes after the first contact (0: none); mean cost [0..1]; largest
 cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards [m], ``UNSEEN`` times
-as much over unknown ground; mean turn rate [rad/s]; mean nearness to moving obstacles [0..1, 1 = contact, exponential]; mean cost
+as much over unknown ground; mean turn rate [rad/s]; greatest nearness to moving obstacles [0..1, 1 = contact, exponential]; mean cost
 times the square of the share of the largest speed [0..1]; share of the horizon within the soft margin of an obstacle, weighed by 0.3
 and the share of the largest speed; angle [rad] at the end between the heading and the way on, less on the last half metre."""
 
@@ -199,7 +199,7 @@ def _roll(
             if closest <= 0.0:
                 collided = max(collided, 1.0 - i / horizon)
             if closest < others.heed:
-                near += np.exp(-max(closest, 0.0) / (others.doubt[0] + others.doubt[1] * (i + 1) * dt))
+                near = max(near, np.exp(-max(closest, 0.0) / (others.doubt[0] + others.doubt[1] * (i + 1) * dt)))
         if collided > 0.0:
             mean_to_go += (horizon - i) * to_go
             break
@@ -214,7 +214,7 @@ def _roll(
             back -= speed * dt * (1.0 if r >= 0 and grids.seen[r, c] else UNSEEN)
     out[COLLIDED], out[COST], out[WORST] = collided, cost / (252.0 * horizon), worst
     out[TO_GO], out[MEAN_TO_GO], out[OFF_PATH] = to_go, mean_to_go / horizon, off_path / horizon
-    out[REVERSED], out[TURNED], out[NEAR] = back, turned / horizon, near / horizon
+    out[REVERSED], out[TURNED], out[NEAR] = back, turned / horizon, near
     out[FAST], out[CLOSE] = fast / (252.0 * horizon), close / horizon
     out[ASIDE] = _aside(grids, motion, to_go)
 

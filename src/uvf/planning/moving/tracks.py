@@ -13,9 +13,10 @@ Mask = NDArray[np.bool_]
 Point = tuple[float, float]
 
 NEVER = 1e6
+FIRST_SPEED = 2.0  # m/s, 1 sigma of what is seen for the first time
 FRESH = 0.3  # weight of the last scan
-SURE = 0.5
-PART = 0.3  # of a thing's points
+SURE = 0.7
+PART = 0.4  # of a thing's points
 BESIDE = 0.15
 """m beyond the radius of a thing that moves, within which what is seen is part of it."""
 
@@ -25,13 +26,15 @@ class TrackSettings:
     """What counts as a thing that moves."""
 
     widest: float = 1.6  # m, wider things are walls
-    acceleration: float = 1.5  # m/s^2, 1 sigma of what a thing may do
-    position_noise: float = 0.05  # m, 1 sigma of the centre of a disc that is seen whole
+    acceleration: float = 3.0  # m/s^2, 1 sigma of what a thing may do
+    position_noise: float = 0.02  # m, 1 sigma of the centre of a disc that is seen whole
     hidden_noise: float = 0.3  # m, the same of one that something covers in part
     gate: float = 1.0  # m from where a thing is expected, within which it is looked for
     least_speed: float = 0.2  # m/s, slower ones stand
-    certainty: float = 2.5  # times its own standard deviation that a speed must have
-    least_hits: int = 4  # scans until it is believed
+    certainty: float = 2.0  # times its own standard deviation that a speed must have
+    least_way: float = 0.1  # m that a thing must have gone until it is believed to move
+    sure_way: float = 0.3  # m that a thing must have gone to be believed though it is slow
+    least_hits: int = 3  # scans that show it whole until it is believed
     coast: float = 0.3  # s that a thing is kept where it should be seen and is not
     coast_hidden: float = 2.0  # s that it is kept where it cannot be seen
     farthest: float = 20.0  # m
@@ -53,25 +56,31 @@ class Track:
     covariance: Floats
     radius: float
     born: Floats
-    """(2,) m, where it was first seen."""
+    """(2,) m, where it was first seen whole, or at all."""
+    whole: int = 0
+    """How often nothing covered a part of it; the visible part of a wall between two other things wanders along with the vehicle."""
     entered: float = 0.0
     """Share [0..1] of the last scans in which it stood on ground that had been free."""
-    has_left: bool = False  # beams pass where it was first seen
     hits: int = 1
     unseen: float = 0.0  # s, in view without being seen
     hidden: float = 0.0  # s, out of view
+    moves: bool = False
+    """Whether it was found to move when it was last seen."""
 
-    def is_moving(self, settings: TrackSettings) -> bool:
-        """Whether its speed is large enough, and sure enough, and has brought it somewhere.
+    def judge(self, settings: TrackSettings) -> None:
+        """Finds whether it moves: its speed is large enough, and has brought it somewhere; at first it must be sure enough too.
 
         The middle of what comes into view bit by bit moves as well; but it does not come onto ground that was free.
         """
         speed = float(np.hypot(self.state[2], self.state[3]))
-        if self.hits < settings.least_hits or speed < settings.least_speed or not (self.has_left or self.entered >= SURE):
-            return False
-        along = self.state[2:] / speed
-        deviation = float(np.sqrt(along @ self.covariance[2:, 2:] @ along))
-        return speed > settings.certainty * deviation and float(np.hypot(*(self.state[:2] - self.born))) > 2.0 * settings.position_noise
+        if self.whole < settings.least_hits or speed < settings.least_speed:
+            self.moves = False
+        elif not self.moves and self.entered >= SURE:
+            along = self.state[2:] / speed
+            deviation = float(np.sqrt(along @ self.covariance[2:, 2:] @ along))
+            gone = float(np.hypot(*(self.state[:2] - self.born)))
+            sure = speed > settings.certainty * deviation or gone > settings.sure_way
+            self.moves = sure and gone > settings.least_way
 
 
 @dataclass
@@ -107,13 +116,13 @@ class MovingObjects:
         )
         for k, disc in enumerate(discs):
             if (track := matched.get(k)) is None:
-                self._begin(disc)
+                self.tracks.append(self._begin(disc))
                 continue
             self._correct(track, disc)
             track.entered += FRESH * (float(entered[int(disc[LABEL])] >= PART) - track.entered)
-            if not track.has_left and float(np.hypot(*(track.state[:2] - track.born))) > track.radius:
-                track.has_left = _passes(track.born, track.radius, eye, points, seen)
-            moving[int(disc[LABEL])] = track.is_moving(self.settings)
+            if track.moves or not disc[HIDDEN]:
+                track.judge(self.settings)
+            moving[int(disc[LABEL])] = track.moves
         mask: Mask = np.zeros(len(ranges), dtype=np.bool_)
         mask[labels >= 0] = moving[labels[labels >= 0]]
         for x, y, _, _, radius in self.moving():  # parts of them that count as other things, or as parts of such
@@ -122,7 +131,7 @@ class MovingObjects:
 
     def moving(self) -> Floats:
         """(m, 5) x, y [m], vx, vy [m/s], radius [m] of what moves, now."""
-        rows = [(*track.state, track.radius) for track in self.tracks if track.is_moving(self.settings)]
+        rows = [(*track.state, track.radius) for track in self.tracks if track.moves]
         return np.array(rows, dtype=np.float64).reshape(-1, 5)
 
     def _predict(self, dt: float) -> None:
@@ -138,33 +147,38 @@ class MovingObjects:
         """Discs to tracks, by the least sum of squared Mahalanobis distances within the gate."""
         if not len(discs) or not self.tracks:
             return {}
-        cost = np.full((len(discs), len(self.tracks)), NEVER)
-        for j, track in enumerate(self.tracks):
-            offset = discs[:, :2] - track.state[:2]
-            for hidden in (0.0, 1.0):
-                rows = discs[:, HIDDEN] == hidden
-                spread = track.covariance[:2, :2] + self._noise(hidden) ** 2 * np.eye(2)
-                squared = np.einsum("ij,ij->i", offset @ np.linalg.inv(spread), offset) + np.log(np.linalg.det(spread) / 1e-4)
-                near = np.hypot(offset[:, 0], offset[:, 1]) <= min(self.settings.gate, 4.0 * float(np.sqrt(spread.trace())))
-                cost[rows & near, j] = squared[rows & near]
+        offset = discs[:, None, :2] - np.array([track.state[:2] for track in self.tracks])
+        spread = np.array([track.covariance[:2, :2] for track in self.tracks])
+        noise = np.where(discs[:, HIDDEN] > 0.0, self.settings.hidden_noise, self.settings.position_noise)[:, None] ** 2
+        xx, yy, xy = spread[:, 0, 0] + noise, spread[:, 1, 1] + noise, spread[:, 0, 1]
+        determinant = xx * yy - xy**2
+        dx, dy = offset[..., 0], offset[..., 1]
+        cost = (yy * dx**2 - 2.0 * xy * dx * dy + xx * dy**2) / determinant + np.log(determinant / 1e-4)
+        cost[np.hypot(dx, dy) > np.minimum(self.settings.gate, 4.0 * np.sqrt(xx + yy))] = NEVER
         pairs = zip(*linear_sum_assignment(cost), strict=True)
         return {int(k): self.tracks[int(j)] for k, j in pairs if cost[k, j] < NEVER}
 
     def _noise(self, hidden: float) -> float:
         return self.settings.hidden_noise if hidden else self.settings.position_noise
 
-    def _begin(self, disc: Floats) -> None:
+    def _begin(self, disc: Floats) -> Track:
+        """A track that begins with a disc."""
         place = self._noise(disc[HIDDEN]) ** 2
-        covariance = np.diag((place, place, 2.0**2, 2.0**2))
-        self.tracks.append(Track(np.array((disc[0], disc[1], 0.0, 0.0)), covariance, float(disc[RADIUS]), disc[:2].copy()))
+        covariance = np.diag((place, place, FIRST_SPEED**2, FIRST_SPEED**2))
+        return Track(np.array((disc[0], disc[1], 0.0, 0.0)), covariance, float(disc[RADIUS]), disc[:2].copy(), int(not disc[HIDDEN]))
 
     def _correct(self, track: Track, disc: Floats) -> None:
+        """Kalman update. What is seen whole for the first time begins anew: the middle of its visible part was not its own."""
+        if not disc[HIDDEN] and not track.whole:
+            begun = self._begin(disc)
+            track.state, track.covariance, track.radius, track.born = begun.state, begun.covariance, begun.radius, begun.born
         noise = self._noise(disc[HIDDEN]) ** 2 * np.eye(2)
         gain = track.covariance[:, :2] @ np.linalg.inv(track.covariance[:2, :2] + noise)
         track.state = track.state + gain @ (disc[:2] - track.state[:2])
         track.covariance = track.covariance - gain @ track.covariance[:2, :]
         if not disc[HIDDEN]:
             track.radius += 0.3 * (float(disc[RADIUS]) - track.radius)
+            track.whole += 1
         track.hits, track.unseen, track.hidden = track.hits + 1, 0.0, 0.0
 
     def _age(self, dt: float, missed: list[Track], scan: tuple[Point, Floats, Floats]) -> None:

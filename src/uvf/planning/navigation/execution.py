@@ -35,7 +35,7 @@ class Executor:
             return result.speed, result.turn_rate
         if directive.action == Action.STOP:
             self.report = Report(directive.number, Drive.NO_PATH, done=True)
-            return self.controller.halt()
+            return self.controller.hold(pose, velocity)
         return self._move(t, pose, velocity, directive)
 
     def _begin(self, pose: Pose2, directive: Directive) -> None:

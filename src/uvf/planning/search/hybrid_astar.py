@@ -1,7 +1,6 @@
 """Hybrid-A*: paths that a vehicle with a turning radius can drive, with its whole outline free on each of their poses."""
 
 from dataclasses import dataclass
-from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +13,8 @@ from uvf.planning.search.goal_field import begin, coarse_index, goal_field
 from uvf.planning.search.goal_room import ENOUGH, states_before
 from uvf.planning.search.hybrid_expansion import Knowledge, Question, curve_to_goal, search, way_to
 from uvf.planning.search.hybrid_nodes import MOVE, make_nodes
-from uvf.planning.search.motion_primitives import SPACING, Moves, VehicleMotion, motion_primitives, shapes
+from uvf.planning.search.hybrid_pieces import cut_short, sampled
+from uvf.planning.search.motion_primitives import Moves, SteeredVehicle, motion_primitives, shapes
 from uvf.planning.search.open_list import make_heap
 from uvf.planning.search.pose_check import HALF_CELL, PoseCheck, pose_check, price_at
 
@@ -25,7 +25,7 @@ MOST_EXPANDED = 1_000_000
 APPROACH = 1_000
 """Nodes expanded after the first way was found, to find a better one (Smac: ``max_on_approach_iterations``)."""
 TOLERANCE = 0.05
-"""Share of a way's cost by which a better one is not looked for."""
+"""Share of the cheapest way's cost by which a way may cost more; far fewer nodes are expanded so."""
 LAST_NUMBER = 2**31 - 2 * MOST_EXPANDED * 6
 """Of a node at a query's begin; the table is cleared after it."""
 
@@ -56,7 +56,7 @@ class HybridAStar:
     factors: (256,) cost factor [-] of each value, 1 or more, negative = impassable.
     """
 
-    def __init__(self, costs: Costmap, factors: Floats, vehicle: VehicleMotion) -> None:
+    def __init__(self, costs: Costmap, factors: Floats, vehicle: SteeredVehicle) -> None:
         if factors.shape != (256,) or not np.isfinite(factors).all() or ((factors >= 0.0) & (factors < 1.0)).any():
             raise ValueError("factors: 256 finite numbers are needed, each 1 or more, or negative for an impassable value")
         if costs.values.size * HEADINGS >= 2**31:
@@ -106,9 +106,14 @@ class HybridAStar:
         if node < 0:
             why = CRAMPED if cramped else GIVEN_UP if expanded >= MOST_EXPANDED else NO_WAY
             return HybridPlan(None, np.empty(0), np.inf, expanded, why)
-        path = self._traced(ask, node, by_curve)
+        pieces, end = self._pieces(ask, node, by_curve)
+        pieces, saved = cut_short(self._check, ask, pieces, end)
+        path = sampled(pieces, start)
+        if by_curve:
+            path[-1, :2] = goal[:2]
         path[:, :2] = path[:, :2] * self._costs.resolution + self._costs.origin
-        return HybridPlan(np.ascontiguousarray(path[:, :3]), path[:, 3].copy(), cost * self._costs.resolution, expanded)
+        cost = (cost - saved) * self._costs.resolution
+        return HybridPlan(np.ascontiguousarray(path[:, :3]), path[:, 3].copy(), cost, expanded)
 
     def _is_cramped(self, ask: Question) -> bool:
         back = self._moves._replace(length=-self._moves.length, turn=-self._moves.turn)
@@ -116,29 +121,18 @@ class HybridAStar:
         self._next += 1
         return states < ENOUGH
 
-    def _traced(self, ask: Question, node: int, by_curve: bool) -> Floats:
-        """(n, 4) x, y [cells], yaw, direction."""
+    def _pieces(self, ask: Question, node: int, by_curve: bool) -> tuple[Floats, Triple]:
+        """The way (n, 5) to a node and on to the goal, in pieces, and the pose where it ends; in cells."""
         way, moves = way_to(self._nodes, node), self._moves
-        steps = [(moves.length[move], moves.curvature[move]) for move in self._nodes.links[way[1:], MOVE]]
-        starts = [self._pose(i) for i in way[:-1]]
-        here = self._pose(int(way[-1]))
+        move, here = self._nodes.links[way[1:], MOVE], self._pose(int(way[-1]))
+        pieces = [np.column_stack((self._nodes.poses[way[:-1], :3], moves.length[move], moves.curvature[move]))]
         if by_curve:
             curve = np.zeros((MOST, 2))
             curve_to_goal(ask, here, curve)
             for length, curvature in curve[curve[:, 0] != 0.0]:
-                steps.append((length, curvature))
-                starts.append(here)
+                pieces.append(np.array([(*here, length, curvature)]))
                 here = moved(*here, curvature, length)
-        first = np.sign(steps[0][0]) if steps else 1.0
-        points: list[tuple[float, float, float, float]] = [(*ask.start, first)]
-        for begun, (length, curvature) in zip(starts, steps, strict=True):
-            n = ceil(abs(length) / SPACING)
-            points += [(*moved(*begun, curvature, length * i / n), np.sign(length)) for i in range(1, n + 1)]
-        path = np.array(points)
-        if by_curve:
-            path[-1, :2] = ask.goal[:2]
-        path[:, 2] = np.mod(path[:, 2] + np.pi, 2.0 * np.pi) - np.pi
-        return path
+        return np.ascontiguousarray(np.vstack(pieces)), here
 
     def _pose(self, i: int) -> Triple:
         x, y, yaw = self._nodes.poses[i, :3].tolist()

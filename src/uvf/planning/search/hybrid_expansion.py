@@ -32,8 +32,8 @@ EXPANSION_RATIO = 3.5
 class Question(NamedTuple):
     """What is asked: poses [cells, rad], ``radius`` [cells], penalties, ``margin`` [cells] round the outline, and when to stop.
 
-    ``tolerance``: the search ends when no open node promises a way cheaper than the best one by this share; ``approach``: most nodes
-    expanded after the first way; ``most``: of all.
+    ``tolerance``: the estimate counts for more by this share, and so much may the way found cost more than the cheapest one (weighted A*,
+    Pohl 1970); ``approach``: most nodes expanded after the first way; ``most``: of all.
     """
 
     start: Triple
@@ -114,34 +114,46 @@ def _priced(know: Knowledge, ask: Question, here: Triple, move: int) -> float:
 
 
 @compiled
-def _way_by(know: Knowledge, ask: Question, at: tuple[Triple, float], moves: tuple[int, int]) -> float:
-    """Cost [cells] of the way on by a primitive from a pose that has its cost, after the primitive before (-1: none); inf where blocked."""
-    (here, cost), (move, before), made = at, moves, know.moves
+def _state(x: float, y: float, heading: int, columns: int) -> int:
+    """Number of the state of a place [cells] and a heading bin."""
+    return (int(y) * columns + int(x)) * HEADINGS + heading
+
+
+@compiled
+def _root(ask: Question, nodes: Nodes, slots: tuple[Slots, int], columns: int) -> int:
+    """Puts the start's node, and tells the state of the goal."""
+    state = _state(ask.start[0], ask.start[1], heading_bin(ask.start[2]), columns)
+    put(nodes, 0, (ask.start[0], ask.start[1], ask.start[2], 0.0), (-1, state, -1))
+    slots[0][state] = slots[1]
+    return _state(ask.goal[0], ask.goal[1], heading_bin(ask.goal[2]), columns)
+
+
+@compiled
+def _over_curve(know: Knowledge, ask: Question, here: Triple, curve: Floats, costs: tuple[float, float]) -> float:
+    """Cost [cells] of the way by ``here`` and the shortest curve to the goal; inf where that is blocked or not below the second of
+    ``costs``, the first being that of the way to ``here``. ``curve`` (5, 2) is room for it."""
+    if costs[0] + curve_to_goal(ask, here, curve) >= costs[1]:
+        return inf
+    return costs[0] + curve_cost(know.check, ask, here, curve)
+
+
+@compiled
+def _over_move(know: Knowledge, ask: Question, here: Triple, moves: tuple[int, int], costs: tuple[float, float]) -> float:
+    """Cost [cells] of the way by ``here`` and the second of ``moves``, the first (-1: none) having led to ``here``.
+
+    inf where the primitive is blocked, or the way costs no less than the second of ``costs``; the first is that of the way to ``here``.
+    """
+    (before, move), known = moves, know.moves
+    length, factor = abs(known.length[move]), known.price[move]
+    if costs[0] + length * factor >= costs[1]:
+        return inf
     price = _priced(know, ask, here, move)
     if price < 0.0:
         return inf
-    factor = made.price[move]
-    if before >= 0 and made.curvature[move] * made.curvature[before] < 0.0:
+    if before >= 0 and known.curvature[move] * known.curvature[before] < 0.0:
         factor += ask.penalties[1]
-    way: float = cost + abs(made.length[move]) * price * factor
-    return way
-
-
-@compiled
-def _end_of(know: Knowledge, here: Triple, move: int) -> tuple[Triple, int]:
-    """Pose [cells, rad] to which a primitive leads, and its state; -1 outside of the map."""
-    shape, (rows, columns) = know.moves.shape, know.check.values.shape
-    k, last = heading_bin(here[2]), know.moves.shape.shape[2] - 1
-    x, y = here[0] + shape[k, move, last, 0], here[1] + shape[k, move, last, 1]
-    state = (int(y) * columns + int(x)) * HEADINGS + ((k + know.moves.turn[move]) & (HEADINGS - 1))
-    return (x, y, shape[k, move, last, 2]), state if 0.0 <= x < columns and 0.0 <= y < rows else -1
-
-
-@compiled
-def _state_of(know: Knowledge, at: Triple) -> int:
-    """Number of the cell and heading bin of a pose on the map."""
-    state: int = (int(at[1]) * know.check.values.shape[1] + int(at[0])) * HEADINGS + heading_bin(at[2])
-    return state
+    way: float = costs[0] + length * price * factor
+    return way if way < costs[1] else inf
 
 
 @compiled
@@ -154,15 +166,13 @@ def search(
     heaps: open list and that of the field; slots: table of states, and the number that this query's first node has in it.
     """
     (heap, fringe), (slot, base), moves = heaps, slots, know.moves
-    p, curve = moves.length.size, np.zeros((MOST, 2))
-    at_goal, state = _state_of(know, ask.goal), _state_of(know, ask.start)
-    put(nodes, 0, (ask.start[0], ask.start[1], ask.start[2], 0.0), (-1, state, -1))
-    slot[state] = base
+    columns, last, p = know.check.values.shape[1], know.moves.shape.shape[2] - 1, know.moves.length.size
+    curve, at_goal = np.zeros((MOST, 2)), _root(ask, nodes, slots, columns)
     key, fringe = _estimate(know, ask, fringe, ask.start)
     count, expanded, wait, limit = 1, 0, 0, ask.most
-    best, best_node, by_curve = inf, -1, False
+    best, best_node, near, near_node = inf, -1, inf, -1
     size = push(heap, 0, key, 0) if key < inf else 0
-    while size > 0 and expanded < limit and heap.keys[0] * (1.0 + ask.tolerance) < best:
+    while size > 0 and expanded < limit and heap.keys[0] < best:
         key, top = heap.keys[0], int(heap.items[0])
         size = pop(heap, size)
         if nodes.links[top, CLOSED] == 1:
@@ -174,34 +184,39 @@ def search(
         wait -= 1
         if wait <= 0:
             wait = int((key - cost) / EXPANSION_RATIO)
-            if cost + curve_to_goal(ask, here, curve) < best:
-                total = cost + curve_cost(know.check, ask, here, curve)
-                if total < best:
-                    limit = min(limit, expanded + ask.approach) if best_node < 0 else limit
-                    best, best_node, by_curve = total, top, True
-        if nodes.links[top, STATE] == at_goal and cost < best:
-            best, best_node, by_curve = cost, top, False
+            total = _over_curve(know, ask, here, curve, (cost, best))
+            if total < best:
+                limit = min(limit, expanded + ask.approach) if best_node < 0 else limit
+                best, best_node = total, top
+        if nodes.links[top, STATE] == at_goal and near_node < 0:
+            near, near_node = cost, top
+            limit = min(limit, expanded + ask.approach)
         heap, nodes = with_room(heap, size, p), with_nodes(nodes, count, p)
+        k = heading_bin(here[2])
         for move in range(p):
-            to, state = _end_of(know, here, move)
-            if state < 0:
+            x, y = here[0] + moves.shape[k, move, last, 0], here[1] + moves.shape[k, move, last, 1]
+            if not (0.0 <= x < columns and 0.0 <= y < know.check.values.shape[0]):
                 continue
-            known, least = slot[state] - base, cost + abs(moves.length[move]) * moves.price[move]
-            if known >= 0 and (nodes.links[known, CLOSED] == 1 or nodes.poses[known, COST] <= least):
+            state = _state(x, y, (k + moves.turn[move]) & (HEADINGS - 1), columns)
+            known = slot[state] - base
+            if known >= 0 and nodes.links[known, CLOSED] == 1:
                 continue
-            way = _way_by(know, ask, (here, cost), (move, before))
-            if way >= best or (known >= 0 and nodes.poses[known, COST] <= way):
+            way = _over_move(know, ask, here, (before, move), (cost, nodes.poses[known, COST] if known >= 0 else inf))
+            if way >= best:
                 continue
-            left, fringe = _estimate(know, ask, fringe, to)
+            yaw = moves.shape[k, move, last, 2]
+            left, fringe = _estimate(know, ask, fringe, (x, y, yaw))
             if way + left >= best:
                 continue
             if known < 0:
                 known = count
                 slot[state] = base + count
                 count += 1
-            put(nodes, known, (to[0], to[1], to[2], way), (top, state, move))
-            size = push(heap, size, way + left, known)
-    return best_node, best, by_curve, count, expanded, nodes, heap, fringe
+            put(nodes, known, (x, y, yaw, way), (top, state, move))
+            size = push(heap, size, way + (1.0 + ask.tolerance) * left, known)
+    if best_node < 0:  # no curve leads to the very goal: its cell has to do
+        return near_node, near, False, count, expanded, nodes, heap, fringe
+    return best_node, best, True, count, expanded, nodes, heap, fringe
 
 
 @compiled

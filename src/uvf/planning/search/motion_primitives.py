@@ -21,7 +21,7 @@ SPACING = 0.6
 
 
 @dataclass(frozen=True)
-class VehicleMotion:
+class SteeredVehicle:
     """How a vehicle may move, and what that costs; Nav2's Smac parameters of the same names.
 
     Penalties are factors on a motion's cost, 1 or more, ``change_penalty`` 0 or more. Raises ValueError for others.
@@ -57,7 +57,7 @@ class Moves(NamedTuple):
     shape: Floats
 
 
-def motion_primitives(vehicle: VehicleMotion, resolution: float) -> Moves:
+def motion_primitives(vehicle: SteeredVehicle, resolution: float) -> Moves:
     """Primitives on cells of ``resolution`` [m]; left, straight, right, and the same backwards. Yaws are those of the bins."""
     radius = max(vehicle.minimum_turning_radius / resolution, 1.0)  # a chord over a cell's diagonal needs no tighter circle
     bins = max(ceil(2.0 * asin(sqrt(0.5) / radius) / STEP), 1)

@@ -37,3 +37,11 @@ def test_a_mapping_that_falls_silent_is_told_apart():
     sight.step(1.0, scan(1.0), FrameTransform(timestamp=stamp(1.0)), 0.0)
     sight.step(2.0, scan(2.0), None, 0.0)
     assert (sight.unseen, sight.map_age) == (0.0, pytest.approx(1.0))
+
+
+@pytest.mark.parametrize("ranges", [[0.0] * 36, [float("inf")] * 36, []])
+def test_in_open_space_a_lidar_that_sees_nothing_has_not_frozen(ranges):
+    sight = SensorWatch(AT_ONCE)
+    for k in range(50):
+        sight.step(0.1 * k, LaserScan(timestamp=stamp(0.1 * k), ranges=ranges), None, 0.05 * k)
+    assert sight.unseen == 0.0
