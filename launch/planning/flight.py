@@ -27,7 +27,7 @@ from uvf.planning.flight.mission import FlownTurns, flight_items, loiter_item
 from uvf.planning.flight.planner import DubinsAirplanePath, FlightLimits, rrt_star_flight
 from uvf.planning.sampling.problem import Budget
 
-ITERATIONS = 6000  # of each try
+ITERATIONS = 20_000  # of each try
 TRIES = ((1.15, 0.0), (1.3, 4.0), (1.6, 8.0), (1.3, 12.0))
 """Of the flown radius, and m added to the margins aside, with which is planned; what comes out is tested with neither."""
 CLIMBING = 0.7

@@ -5,6 +5,7 @@ The autopilot leads from one given course to the next along the shortest Dubins 
 too steep, the mission circles to the height.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import remainder, tau
 
@@ -70,13 +71,14 @@ def flight_items(path: DubinsAirplanePath, airspace: Airspace, limits: FlightLim
     """Mission items (x east, y north) from the path's start, which is none of them, to its goal; None where a way between is not clear.
 
     Nodes that are not needed are left out. The heights of the others are as near as they may be to an even climb from start to goal, since
-    the search only looks for a short way over ground. A climb that is too steep becomes an ``orbit`` to altitude, before it or behind a
-    descent.
+    the search only looks for a short way over ground. A climb that is too steep becomes an ``orbit`` to altitude, at one place if that
+    can be.
     """
     flown = _Flown(airspace, space_of(airspace), limits, turns)
-    for may_circle in (False, True):
-        for share in PLANNED:
-            if (items := _items(flown, _levelled(path.waypoints, share), may_circle)) is not None:
+    even = [_levelled(path.waypoints, share) for share in PLANNED]
+    for profiles, may_circle in ((even, False), (_at_once(path.waypoints), True), (even, True)):
+        for nodes in profiles:
+            if (items := _items(flown, nodes, may_circle)) is not None:
                 return items
     return None
 
@@ -87,6 +89,13 @@ def _levelled(nodes: Floats, planned: float) -> list[Configuration]:
     even = nodes[0, 2] + (nodes[-1, 2] - nodes[0, 2]) * along / max(along[-1], 1e-9)
     heights = even + planned * (nodes[:, 2] - even)
     return [(x, y, height, course) for (x, y, _, course), height in zip(nodes.tolist(), heights.tolist(), strict=True)]
+
+
+def _at_once(nodes: Floats) -> Iterator[list[Configuration]]:
+    """Nodes (n, 4) at the height of the start up to one of them, behind it at that of the goal; high for as long as can be first."""
+    start, goal, last = float(nodes[0, 2]), float(nodes[-1, 2]), len(nodes) - 1
+    for k in range(last) if goal > start else range(last - 1, -1, -1):
+        yield [(x, y, start if i <= k else goal, course) for i, (x, y, _, course) in enumerate(nodes.tolist())]
 
 
 def _items(flown: _Flown, nodes: list[Configuration], may_circle: bool) -> list[Waypoint] | None:
