@@ -56,9 +56,13 @@ class Heard:
 
     def listen(self, lockstep: Lockstep) -> None:
         """From now on."""
-        heard = {topics.NAV_STATUS: self._status, topics.MAP: self._map, topics.TRUTH: self._truth, topics.CONTACT: self._contact}
-        for topic, hear in heard.items():
-            lockstep.bus.subscribe(topic.at(VEHICLE), topic.qos, hear)
+        for key, qos, hear in (
+            (topics.NAV_STATUS.at(VEHICLE), topics.NAV_STATUS.qos, self._status),
+            (topics.MAP.at(VEHICLE), topics.MAP.qos, self._map),
+            (topics.TRUTH.at(VEHICLE), topics.TRUTH.qos, self._truth),
+            (topics.CONTACT.at(VEHICLE), topics.CONTACT.qos, self._contact),
+        ):
+            lockstep.bus.subscribe(key, qos, hear)
 
     def _status(self, sample: Sample) -> None:
         self.status = NavStatus.FromString(sample.payload)
