@@ -14,13 +14,15 @@ from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.log.replay import into_service
 
 TOLERANCE = 1e-6  # processors round the last digits differently
+TOLERANCES = {"tracker": 0.05}
+"""m/s and rad/s: what it chooses it averages from many futures, in single precision, and each average is the start of the next."""
 KINDS = [catalogue.kind(name) for name in ("sim_ground", "sim_air", "slam", "planner", "autopilot")]
 HOSTS = {h.service.name: h for h in catalogue.hosts(load_scenario(ROOT / "missions" / "demo.yaml"), KINDS)}
 
 
 @pytest.mark.parametrize("name", HOSTS)
 def test_the_service_does_what_it_did(name):
-    assert [str(d) for d in into_service(GOLDEN, HOSTS[name], TOLERANCE)][:5] == []
+    assert [str(d) for d in into_service(GOLDEN, HOSTS[name], TOLERANCES.get(name, TOLERANCE))][:5] == []
 
 
 @pytest.mark.parametrize("name", HOSTS)
