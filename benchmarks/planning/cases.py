@@ -19,7 +19,7 @@ MEASURED = {
     "recovery": recovery.measure,
 }
 """By case: a function of the selection and the data folder that returns rows."""
-OPTIONS = {"barn": barn.OPTIONS, "dynabarn": barn.OPTIONS, "recovery": recovery.OPTIONS} | dict.fromkeys(goals.CASES, goals.OPTIONS)
+OPTIONS = {"barn": barn.OPTIONS, "dynabarn": barn.OPTIONS, "recovery": recovery.OPTIONS} | dict.fromkeys(goals.WORLDS, goals.OPTIONS)
 
 
 def cases(data: Path | None, selection: Selection) -> dict[str, Case]:

@@ -41,7 +41,7 @@ PATIENCE = 120.0  # s for a goal
 THERE = 0.3  # m
 APART = 0.15  # m beyond the rover's radius that a goal lies from obstacles
 CELL = 0.05  # m
-CASES = tuple(f"goals:{world}" for world in STARTS)
+WORLDS = tuple(f"goals:{world}" for world in STARTS)
 KINDS = ("sim_ground", "slam", "planner", "autopilot")
 
 
@@ -176,4 +176,4 @@ def errands(world: str, selection: Selection, data: Path | None) -> Figures:
 
 def cases(selection: Selection) -> dict[str, Case]:
     """A case for each world."""
-    return dict(zip(CASES, (partial(errands, world, selection) for world in STARTS), strict=True))
+    return dict(zip(WORLDS, (partial(errands, world, selection) for world in STARTS), strict=True))

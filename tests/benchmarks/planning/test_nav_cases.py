@@ -10,7 +10,7 @@ from launch.settings import benchmark_modules
 from uvf.maths.curves.dubins_words import dubins_length
 from uvf.models.yaml_data import BadInput
 
-NAMES = {"barn", "dynabarn", "recovery", "dubins", "coverage", "sampling", "survey", "movingai", "nav2maps"}
+NAMES = {"barn", "dynabarn", "recovery", "dubins", "coverage", "sampling", "survey", "movingai", "nav2maps", "goals"}
 
 
 def test_the_group_has_each_case_and_planning_has_no_other_group():
