@@ -66,10 +66,14 @@ def _warm_up() -> None:
     planner.see(np.zeros((20, 20), dtype=np.int8), (0.05, (0.0, 0.0)))
     planner.plan((0.2, 0.2), (0.8, 0.8))
     planner.refusal((0.2, 0.2), (0.8, 0.8))
-    limits = Limits(-0.1, 0.2, 1.0, 1.0, 2.0, 1.0)
-    controller = LocalController(footprint, limits, Mppi(limits, footprint, MppiSettings(samples=200)), ControllerSettings())
+    limits, box = (
+        Limits(-0.1, 0.2, 1.0, 1.0, 2.0, 1.0),
+        RobotFootprint.polygon(np.array(((0.1, 0.1), (-0.1, 0.1), (-0.1, -0.1), (0.1, -0.1)))),
+    )
     angles = np.linspace(-3.0, 3.0, 60)
     rays, ranges = np.column_stack((np.cos(angles), np.sin(angles))), np.ones(60)
-    for t in (0.0, 0.1):
-        controller.see(t, Pose2(0.0, 0.0, 0.0), (0.0, 0.0), rays, ranges)
-    controller.drive(Pose2(0.0, 0.0, 0.0), (0.0, 0.0), np.array(((0.0, 0.0), (0.5, 0.0))))
+    for outline in (footprint, box):
+        controller = LocalController(outline, limits, Mppi(limits, outline, MppiSettings(samples=200)), ControllerSettings())
+        for t in (0.0, 0.1):
+            controller.see(t, Pose2(0.0, 0.0, 0.0), (0.0, 0.0), rays, ranges)
+        controller.drive(Pose2(0.0, 0.0, 0.0), (0.0, 0.0), np.array(((0.0, 0.0), (0.5, 0.0))))
