@@ -21,6 +21,7 @@ from uvf.planning.global_planner import GlobalPlanner, PlannedBody
 from uvf.planning.local.controller import ControllerSettings, LocalController
 from uvf.planning.local.mppi import Mppi, MppiSettings
 from uvf.planning.local.planner import Limits
+from uvf.planning.local.swept_stop import safe_share
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.sensors.fitted import sweeping_of
 
@@ -77,3 +78,4 @@ def _warm_up() -> None:
         for t in (0.0, 0.1):
             controller.see(t, Pose2(0.0, 0.0, 0.0), (0.0, 0.0), rays, ranges)
         controller.drive(Pose2(0.0, 0.0, 0.0), (0.0, 0.0), np.array(((0.0, 0.0), (0.5, 0.0))))
+    safe_share(np.array(((0.2, 0.0),)), (0.5, 0.1), box, 0.01, (0.3, 1.0, 1.0))
