@@ -8,18 +8,17 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from launch.planning.aircraft import MissionText, airspeed_of, load_aircraft
 from launch.planning.obstacles import highest_ground, prisms_of
-from launch.vehicles.inspection import folder_of
 from uvf.guidance.corners import CornerLimits
 from uvf.guidance.fence_plan import PATH_ROOM
 from uvf.maths.zones import Disc, Polygon
 from uvf.models.mission.fence import FenceFile, Zone, fence_fault, region_of, zones_of
 from uvf.models.mission.file import Metres, Waypoint
 from uvf.models.scenario import ROOT
-from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.world.file import WorldFile, load_world
-from uvf.models.yaml_data import BadInput, convert, load_yaml
+from uvf.models.yaml_data import BadInput, load_yaml
 from uvf.planning.flight.airspace import Airspace, Prism
 from uvf.planning.flight.clearance import Configuration
 from uvf.planning.flight.loiter import plan_loiter
@@ -33,7 +32,6 @@ TRIES = ((1.15, 0.0), (1.3, 4.0), (1.6, 8.0), (1.3, 12.0))
 CLIMBING = 0.7
 """Of the fastest climb and descent, that paths are planned with."""
 SPARE = 1.2, 60.0  # of the planned time, s: how long the run may last
-WAYPOINT_ERROR = 5.0  # m
 VEHICLE = "aircraft"
 
 
@@ -109,29 +107,28 @@ class PlannedFlight:
         """The mission file."""
         wishes = self.wishes
         x, y, z, course = self.path.waypoints[0].tolist()
-        wind = f"wind: {{steady: [{wishes.wind[0]:g}, {wishes.wind[1]:g}, 0.0]}}\n" if any(wishes.wind) else ""
         slowest = self.airspeed - math.hypot(*wishes.wind)
         legs = sum(item.kind == "waypoint" for item in self.items)
-        rows = "\n".join(f"        - {_row(item)}" for item in self.items)
-        return (
-            f"about: Flight of {wishes.file.name.replace(':', ' ')} past {len(self.airspace.obstacles)} obstacles, {legs} waypoints.\n"
-            f"world: {wishes.world}\nseed: {wishes.seed}\nduration: {SPARE[0] * self.path.length / slowest + SPARE[1]:.0f}.0\n{wind}\n"
-            f"vehicles:\n  {VEHICLE}:\n    model: {Path(wishes.vehicle).name}\n    system_id: 1\n"
-            f"    start: {{x: {x:.2f}, y: {y:.2f}, z: {z - self.ground:.2f}, yaw: {math.remainder(course, math.tau):.5f}, "
-            f"speed: {self.airspeed:g}}}\n{_fence_rows(self.fence)}"
-            f"    job:\n      mission:\n{rows}\n\n"
-            f"criteria:\n  - {{vehicle: {VEHICLE}, measure: legs, at_least: {legs}}}\n"
-            f"  - {{vehicle: {VEHICLE}, measure: waypoint_error, at_most: {WAYPOINT_ERROR}}}\n"
+        text = MissionText(
+            about=f"Flight of {wishes.file.name.replace(':', ' ')} past {len(self.airspace.obstacles)} obstacles, {legs} waypoints.",
+            world=wishes.world,
+            seed=wishes.seed,
+            duration=SPARE[0] * self.path.length / slowest + SPARE[1],
+            wind=wishes.wind,
+            name=VEHICLE,
+            vehicle=wishes.vehicle,
+            start=f"{{x: {x:.2f}, y: {y:.2f}, z: {z - self.ground:.2f}, yaw: {math.remainder(course, math.tau):.5f}, "
+            f"speed: {self.airspeed:g}}}",
+            rows=[_row(item) for item in self.items],
+            legs=legs,
+            fence=_fence_rows(self.fence),
         )
+        return str(text)
 
 
 def plan_flight(wishes: FlightWishes) -> PlannedFlight:
     """The flight that is asked for. Raises BadInput."""
-    folder = folder_of(wishes.vehicle, ROOT / "vehicles")
-    vehicle = load_vehicle(folder.parent, folder.name)
-    if vehicle.air is None:
-        raise BadInput(f"vehicle '{wishes.vehicle}' is no aircraft; a flight needs one, such as milvus")
-    params = convert(vehicle.params.get("autopilot_air", {}), AirParams, str(folder / "vehicle.yaml"), ("params", "autopilot_air"))
+    _, params = load_aircraft(wishes.vehicle, "a flight")
     world = load_world(ROOT / "worlds", wishes.world)
     if not wishes.file.is_file():
         raise BadInput(f"no file {wishes.file}: it is a .yaml with start, goal, fence and obstacles")
@@ -143,9 +140,7 @@ def plan_flight(wishes: FlightWishes) -> PlannedFlight:
 
 
 def _planned(wishes: FlightWishes, file: FlightFile, params: AirParams, world: WorldFile) -> PlannedFlight:
-    airspeed = wishes.airspeed or params.trim_airspeed
-    if not params.min_airspeed <= airspeed <= params.max_airspeed:
-        raise BadInput(f"an airspeed of {airspeed:g} m/s; {wishes.vehicle} flies {params.min_airspeed:g} to {params.max_airspeed:g} m/s")
+    airspeed = airspeed_of(wishes.vehicle, params, wishes.airspeed)
     if math.hypot(*wishes.wind) >= airspeed:
         raise BadInput(f"a wind of {math.hypot(*wishes.wind):g} m/s; at {airspeed:g} m/s not every course can be flown in it")
     turns = CornerLimits(airspeed, (wishes.wind[1], wishes.wind[0]), params.turn_bank)

@@ -6,17 +6,17 @@ from pathlib import Path
 
 import numpy as np
 
-from launch.vehicles.inspection import folder_of
+from launch.planning.aircraft import MissionText, airspeed_of, load_aircraft
+from launch.planning.obstacles import highest_ground
 from uvf.guidance.corners import CornerLimits
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.importing.areas import read_areas
 from uvf.models.mission.file import Waypoint
 from uvf.models.scenario import ROOT
-from uvf.models.vehicle.file import VehicleFile, load_vehicle
+from uvf.models.vehicle.file import VehicleFile
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.world.file import WorldFile, load_world
-from uvf.models.world.terrain import relief
-from uvf.models.yaml_data import BadInput, convert
+from uvf.models.yaml_data import BadInput
 from uvf.planning.coverage.camera import SurveyCamera
 from uvf.planning.coverage.field import CoverageField, join_fields, make_field
 from uvf.planning.coverage.ground_speed import GroundSpeed
@@ -29,6 +29,7 @@ from uvf.planning.coverage.vehicles import SurveyAircraft
 SETTLING = 1.5  # s, level on the swath's line before it begins
 LEAVING = 0.2  # s, straight on behind it
 APPROACH = 6.0  # s, from where the flight begins to the first waypoint
+VEHICLE = "surveyor"
 SPARE = 1.15, 60.0  # of the planned time, s: how long the run may last
 
 
@@ -81,31 +82,24 @@ class Survey:
         course = float(self.plan.segments[0, 2])
         back = APPROACH * self.airspeed
         x, y = first.x - back * math.cos(course), first.y - back * math.sin(course)
-        wind = f"wind: {{steady: [{wishes.wind[0]:g}, {wishes.wind[1]:g}, 0.0]}}\n" if any(wishes.wind) else ""
-        legs = sum(item.kind == "waypoint" for item in self.items)
-        rows = "\n".join(f"        - {_row(item)}" for item in self.items)
-        return (
-            f"about: Survey of {wishes.area.name.replace(':', ' ')} from {self.flight.height:g} m, {len(self.plan.swaths)} swaths.\n"
-            f"world: {wishes.world}\nseed: {wishes.seed}\nduration: {SPARE[0] * self.plan.time + SPARE[1]:.0f}.0\n{wind}\n"
-            f"vehicles:\n  {VEHICLE}:\n    model: {Path(wishes.vehicle).name}\n    system_id: 1\n"
-            f"    start: {{x: {x:.1f}, y: {y:.1f}, z: {self.flight.height:.1f}, yaw: {course:.4f}, speed: {self.airspeed:g}}}\n"
-            f"    job:\n      mission:\n{rows}\n\n"
-            f"criteria:\n  - {{vehicle: {VEHICLE}, measure: legs, at_least: {legs}}}\n"
-            f"  - {{vehicle: {VEHICLE}, measure: waypoint_error, at_most: {WAYPOINT_ERROR}}}\n"
+        text = MissionText(
+            about=f"Survey of {wishes.area.name.replace(':', ' ')} from {self.flight.height:g} m, {len(self.plan.swaths)} swaths.",
+            world=wishes.world,
+            seed=wishes.seed,
+            duration=SPARE[0] * self.plan.time + SPARE[1],
+            wind=wishes.wind,
+            name=VEHICLE,
+            vehicle=wishes.vehicle,
+            start=f"{{x: {x:.1f}, y: {y:.1f}, z: {self.flight.height:.1f}, yaw: {course:.4f}, speed: {self.airspeed:g}}}",
+            rows=[_row(item) for item in self.items],
+            legs=sum(item.kind == "waypoint" for item in self.items),
         )
-
-
-VEHICLE = "surveyor"
-WAYPOINT_ERROR = 5.0  # m
+        return str(text)
 
 
 def plan_survey(wishes: SurveyWishes) -> Survey:
     """The survey that is asked for. Raises BadInput."""
-    folder = folder_of(wishes.vehicle, ROOT / "vehicles")
-    file = load_vehicle(folder.parent, folder.name)
-    if file.air is None:
-        raise BadInput(f"vehicle '{wishes.vehicle}' is no aircraft; a survey from the air needs one, such as milvus")
-    params = convert(file.params.get("autopilot_air", {}), AirParams, str(folder / "vehicle.yaml"), ("params", "autopilot_air"))
+    file, params = load_aircraft(wishes.vehicle, "a survey from the air")
     world = load_world(ROOT / "worlds", wishes.world)
     try:
         return _planned(wishes, file, params, world)
@@ -118,9 +112,7 @@ def _planned(wishes: SurveyWishes, file: VehicleFile, params: AirParams, world: 
     camera = wishes.camera or _own_camera(file)
     width = wishes.spacing if wishes.spacing is not None else _of(camera).spacing(wishes.height, wishes.overlaps[0])
     trigger = wishes.trigger if wishes.trigger is not None else _of(camera).trigger_distance(wishes.height, wishes.overlaps[1])
-    airspeed = wishes.airspeed or params.trim_airspeed
-    if not params.min_airspeed <= airspeed <= params.max_airspeed:
-        raise BadInput(f"an airspeed of {airspeed:g} m/s; {wishes.vehicle} flies {params.min_airspeed:g} to {params.max_airspeed:g} m/s")
+    airspeed = airspeed_of(wishes.vehicle, params, wishes.airspeed)
     turns = CornerLimits(airspeed, (wishes.wind[1], wishes.wind[0]), params.turn_bank)
     fastest = airspeed + math.hypot(*wishes.wind)
     leads = SETTLING * fastest, LEAVING * fastest
@@ -168,13 +160,9 @@ def _of(camera: SurveyCamera | None) -> SurveyCamera:
 
 
 def _ground(field: CoverageField, world: WorldFile) -> float:
-    """The highest ground [m, world frame] below the field, looked at on a grid of its bounding box."""
-    terrain = relief(world)
-    if terrain is None:
-        return 0.0
+    """The highest ground [m, world frame] below the field's bounding box."""
     x0, y0, x1, y1 = field.shape.bounds
-    heights, _ = terrain.at(*np.meshgrid(np.linspace(x0, x1, 200), np.linspace(y0, y1, 200)))
-    return float(heights.max())
+    return highest_ground(world, (x0, y0), (x1, y1))
 
 
 def _row(item: Waypoint) -> str:
