@@ -8,8 +8,17 @@ from numpy.typing import NDArray
 
 from uvf.planning.costmap.costmap import Costmap, Frame, make_costmap
 from uvf.planning.costmap.footprint import RobotFootprint
-from uvf.planning.costmap.inflation import INSCRIBED, Inflation, cost_factors
-from uvf.planning.costmap.own_ground import LEAVING, ground_below, leads_away, standing_radius, widened, with_own_ground, with_way_out
+from uvf.planning.costmap.inflation import INSCRIBED, Inflation
+from uvf.planning.costmap.own_ground import (
+    WAY_OUT,
+    ground_below,
+    leads_away,
+    leaving_factors,
+    standing_radius,
+    widened,
+    with_own_ground,
+    with_way_out,
+)
 from uvf.planning.navigation.failures import Failure
 from uvf.planning.search.grid_search import Cell, CostToGo, GridSearch
 from uvf.planning.smoothing import SPACING, length, smoothed
@@ -17,11 +26,9 @@ from uvf.planning.smoothing import SPACING, length, smoothed
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
 
-WAY_OUT = 0.3  # m about the vehicle within which it may leave the room it should keep from obstacles
 UNKNOWN_COST = 3.0
 """Factor on the cost of unknown ground for goals that may lie behind it."""
-LEAVING_COST = 30.0
-"""Factor on the cost of ground within the inscribed radius of an obstacle, when it has to be left."""
+
 
 MOST_CELLS = 8_000_000
 """Of a map, 140 x 140 m in cells of 5 cm: a step that plans over it takes seconds, and one of 6 s is ended."""
@@ -210,9 +217,7 @@ class GlobalPlanner:
         return standing_radius(self._body.footprint.circumscribed_radius, self._body.sensor_offset, costs.resolution)
 
     def _factors(self, allow_unknown: bool) -> Floats:
-        factors = cost_factors(self._body.cost_travel_multiplier, UNKNOWN_COST if allow_unknown else -1.0)
-        factors[LEAVING] = LEAVING_COST
-        return factors
+        return leaving_factors(self._body.cost_travel_multiplier, UNKNOWN_COST if allow_unknown else -1.0)
 
 
 def _too_far(points: Floats) -> str:

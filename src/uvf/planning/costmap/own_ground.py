@@ -8,14 +8,18 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from uvf.planning.costmap.costmap import FAR, Cell, Costmap, Frame
-from uvf.planning.costmap.inflation import INSCRIBED, MAX_NON_OBSTACLE, Inflation, inflated
+from uvf.planning.costmap.inflation import INSCRIBED, MAX_NON_OBSTACLE, Inflation, cost_factors, inflated
 
 Bytes = NDArray[np.uint8]
+Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Window = tuple[slice, slice]
 
 LEAVING = MAX_NON_OBSTACLE
 """Value of a cell that is too near to an obstacle, when the vehicle has to leave it; inflation gives no cell this value."""
+LEAVING_COST = 30.0
+"""Factor on the cost of ground within the inscribed radius of an obstacle, when it has to be left."""
+WAY_OUT = 0.3  # m about the vehicle within which it may leave such ground
 
 
 def standing_radius(circumscribed: float, sensor_offset: float, resolution: float) -> float:
@@ -71,6 +75,13 @@ def with_way_out(costs: Costmap, start: Cell, reach: float) -> Costmap:
     values[window][near] = LEAVING
     values[start] = LEAVING
     return replace(costs, values=values)
+
+
+def leaving_factors(multiplier: float, unknown: float) -> Floats:
+    """(256,) factors [-] by value as ``cost_factors`` has them, with ground that has to be left."""
+    factors = cost_factors(multiplier, unknown)
+    factors[LEAVING] = LEAVING_COST
+    return factors
 
 
 def leads_away(costs: Costmap, start: Cell, radius: float) -> bool:

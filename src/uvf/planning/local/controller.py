@@ -11,9 +11,9 @@ from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.planning.costmap.costmap import Costmap
 from uvf.planning.costmap.footprint import RobotFootprint
-from uvf.planning.costmap.inflation import Inflation, cost_factors
+from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
-from uvf.planning.costmap.own_ground import LEAVING, with_way_out
+from uvf.planning.costmap.own_ground import WAY_OUT, leaving_factors, with_way_out
 from uvf.planning.local.goal_checker import GoalChecker, GoalTolerances, turn_to_heading
 from uvf.planning.local.planner import STOP, Limits, LocalPlanner, LocalSituation, State, within
 from uvf.planning.local.swept_stop import safe_share
@@ -24,13 +24,10 @@ Floats = NDArray[np.float64]
 
 FAST = 0.4  # m/s, what moves slower is stopped for
 EDGE = 0.05  # m beyond its radius within which a point belongs to what moves
-LEAVING_COST = 30.0
-"""Factor on the cost of ground within the inscribed radius of an obstacle, when it has to be left."""
 EVADED = 6.0  # m within which what moves may have to be evaded
 NEAR = 4.0  # m, farther points cannot be reached before the next scan
 REMEMBERED = 1.0  # m within which the stop heeds obstacles that are out of view
 TURN_COUNTS = 0.3  # m/rad
-WAY_OUT = 0.3  # m about the vehicle within which it may leave such ground
 
 
 @dataclass(frozen=True)
@@ -88,8 +85,7 @@ class LocalController:
         self.moving = MovingObjects()
         self._goal = GoalChecker(settings.goal)
         self._plan_footprint = footprint.padded(settings.margin)
-        self._factors = cost_factors(settings.cost_travel_multiplier, 1.0)
-        self._factors[LEAVING] = LEAVING_COST
+        self._factors = leaving_factors(settings.cost_travel_multiplier, 1.0)
         self._odometer = 0.0  # m
         self._pose: Pose2 | None = None
         self._near: Floats = np.zeros((0, 2))
@@ -168,21 +164,23 @@ class LocalController:
         if len(path) == 0:
             self._last = STOP
             return DriveResult(*STOP, Drive.NO_PATH)
-        state = self._ahead(pose, velocity, self._limits_now(pose))
+        limits = self._limits_now(pose)
+        state = self._ahead(pose, velocity, limits)
         if self._goal.at_place(state, (float(path[-1, 0]), float(path[-1, 1]))):
             return self._at_goal(state, velocity, heading)
-        return self._along(pose, velocity, path)
+        return self._along((pose, velocity), state, limits, path)
 
     def hold(self, pose: Pose2, velocity: tuple[float, float]) -> tuple[float, float]:
         """Stands, as long as nothing that moves comes near; a vehicle that may evade makes way for it."""
         if self.settings.evasion is None or not self._is_among_moving(pose):
             return self.halt()
-        result = self._along(pose, velocity, np.array((pose[:2],)))
+        limits = self.settings.evasion
+        result = self._along((pose, velocity), self._ahead(pose, velocity, limits), limits, np.array((pose[:2],)))
         return result.speed, result.turn_rate
 
-    def _along(self, pose: Pose2, velocity: tuple[float, float], path: Floats) -> DriveResult:
-        settings, limits = self.settings, self._limits_now(pose)
-        state = self._ahead(pose, velocity, limits)
+    def _along(self, measured: tuple[Pose2, tuple[float, float]], state: State, limits: Limits, path: Floats) -> DriveResult:
+        """Along the path from the state that is expected when the command takes effect."""
+        (pose, velocity), settings = measured, self.settings
         obstacles = self.moving.moving()
         obstacles[:, :2] += settings.delay * obstacles[:, 2:4]
         costs = self.leaving(self.costmap(settings.window.size + 1.0), pose)

@@ -1,6 +1,7 @@
 """Model predictive path integral control (Williams, Aldrich, Theodorou 2017): the commands that many random futures agree on."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import ceil
 
 import numpy as np
@@ -66,6 +67,7 @@ class Mppi:
         self._plan: Floats = np.zeros((settings.steps, 2))
         self._commands = np.empty((settings.samples, settings.steps, 2), dtype=np.float32)
         self._found = np.empty((settings.samples, FEATURES), dtype=np.float32)
+        self._weights = _weights(settings, limits)
         self.best: Floats32 = np.zeros(FEATURES, dtype=np.float32)
         """Features of the plan that was chosen last."""
 
@@ -99,24 +101,25 @@ class Mppi:
         stuck = self.best[rollout.COLLIDED] > AT_ONCE and not len(now.obstacles)  # what moves may yet pass by
         return None if stuck else (speed, turn)
 
-    @property
-    def _weights(self) -> Floats32:
-        s, limits = self.settings, self._limits
-        way, weights = s.steps * s.step * limits.max_speed, np.zeros(FEATURES, dtype=np.float32)
-        weights[rollout.COLLIDED], weights[rollout.COST], weights[rollout.NEAR] = s.collision_weight, s.cost_weight, s.near_weight
-        weights[rollout.TO_GO], weights[rollout.MEAN_TO_GO] = s.to_go_weight / way, s.mean_to_go_weight / way
-        weights[rollout.OFF_PATH], weights[rollout.REVERSED] = s.off_path_weight / way, s.reverse_weight / way
-        weights[rollout.FAST], weights[rollout.CLOSE] = s.fast_weight, s.close_weight
-        weights[rollout.TURNED] = s.turn_weight / limits.max_turn_rate
-        weights[rollout.ASIDE] = s.aside_weight / way * limits.max_speed / limits.max_turn_rate
-        return weights
-
     def _smooth(self) -> None:
         for k in range(2):
             padded = np.concatenate(([self._plan[0, k]] * 2, self._plan[:, k], [self._plan[-1, k]] * 2))
             self._plan[:, k] = np.convolve(padded, SMOOTH, mode="valid")
 
 
+def _weights(s: MppiSettings, limits: Limits) -> Floats32:
+    """(FEATURES,) what a unit of each feature costs."""
+    way, weights = s.steps * s.step * limits.max_speed, np.zeros(FEATURES, dtype=np.float32)
+    weights[rollout.COLLIDED], weights[rollout.COST], weights[rollout.NEAR] = s.collision_weight, s.cost_weight, s.near_weight
+    weights[rollout.TO_GO], weights[rollout.MEAN_TO_GO] = s.to_go_weight / way, s.mean_to_go_weight / way
+    weights[rollout.OFF_PATH], weights[rollout.REVERSED] = s.off_path_weight / way, s.reverse_weight / way
+    weights[rollout.FAST], weights[rollout.CLOSE] = s.fast_weight, s.close_weight
+    weights[rollout.TURNED] = s.turn_weight / limits.max_turn_rate
+    weights[rollout.ASIDE] = s.aside_weight / way * limits.max_speed / limits.max_turn_rate
+    return weights
+
+
+@lru_cache(maxsize=4)
 def _manoeuvres(limits: Limits, settings: MppiSettings) -> Floats32:
     """(k, steps, 2) commands that find a way where noise round the last plan does not: held steady, or turning first and then driving."""
     speeds = np.linspace(limits.min_speed, limits.max_speed, 9)

@@ -30,7 +30,7 @@ class GlobalRoutes:
     def __init__(self, planner: GlobalPlanner, layer: ObstacleLayer) -> None:
         self.allow_unknown = False
         self._planner, self._layer = planner, layer
-        self._drawn: tuple[Cells, Frame] = (np.zeros((0, 0), dtype=np.int8), (1.0, (0.0, 0.0)))
+        self._drawn: tuple[Cells, Frame] | None = None
         self._map: tuple[Cells, Frame] | None = None
         """The map as it was drawn, and with what is to be kept out of."""
         self._walls: NDArray[np.bool_] = np.zeros((0, 0), dtype=np.bool_)
@@ -42,7 +42,7 @@ class GlobalRoutes:
     def keep_out(self, mask: ZoneMask, mask_from_map: Pose2) -> None:
         """From now on the vehicle is not to drive where the mask says so."""
         self._keep_out = mask, mask_from_map
-        if self._map is not None:
+        if self._drawn is not None:
             self.take(*self._drawn)
 
     def take(self, cells: Cells, frame: Frame) -> None:
@@ -56,17 +56,17 @@ class GlobalRoutes:
         """Gives the planner the map with what is seen from ``here`` [m]; whether that is another one than before."""
         if self._map is None:
             return False
-        cells, (resolution, origin) = self._map
-        lethal = self._on_map(self._layer.cells == LETHAL)
+        cells, frame = self._map
+        lethal = self._on_map(self._layer.cells == LETHAL, frame)
         lethal = lethal[~self._walls[lethal[:, 0], lethal[:, 1]]]  # a wall of the map is where the map has it
-        free = self._on_map(self._layer.cells == FREE_SPACE) if self._trusts_sight else lethal[:0]
+        free = self._on_map(self._layer.cells == FREE_SPACE, frame) if self._trusts_sight else lethal[:0]
         shown = lethal.tobytes() + free.tobytes()
         changed = shown != self._shown
         if changed:
             self._shown, cells = shown, cells.copy()
             cells[free[:, 0], free[:, 1]] = 0
             cells[lethal[:, 0], lethal[:, 1]] = 100
-            self._planner.see(cells, (resolution, origin))
+            self._planner.see(cells, frame)
         return self._planner.stand(here) | changed
 
     def plan(self, pose: Pose2, goal: NavigationGoal) -> Route:
@@ -99,16 +99,11 @@ class GlobalRoutes:
         out = (mask.at(transform(mask_from_map, centres)) >= KEPT_OUT).reshape(cells.shape)
         return np.where(out, np.int8(100), cells)
 
-    def _on_map(self, mask: NDArray[np.bool_]) -> NDArray[np.int64]:
-        """(n, 2) rows and columns of the map on which the layer's cells of a mask lie."""
-        layer, resolution = self._layer, self._planner_frame[0]
-        x0, y0 = self._planner_frame[1]
+    def _on_map(self, mask: NDArray[np.bool_], frame: Frame) -> NDArray[np.int64]:
+        """(n, 2) rows and columns of the map, which has a frame, on which the layer's cells of a mask lie."""
+        layer, (resolution, (x0, y0)) = self._layer, frame
         at = np.argwhere(mask)
         rows = np.floor(((at[:, 0] + 0.5) * layer.resolution + layer.origin[1] - y0) / resolution).astype(np.int64)
         columns = np.floor(((at[:, 1] + 0.5) * layer.resolution + layer.origin[0] - x0) / resolution).astype(np.int64)
         inside = (rows >= 0) & (columns >= 0) & (rows < self._walls.shape[0]) & (columns < self._walls.shape[1])
         return np.column_stack((rows[inside], columns[inside]))
-
-    @property
-    def _planner_frame(self) -> Frame:
-        return self._map[1] if self._map is not None else (1.0, (0.0, 0.0))
