@@ -4,94 +4,25 @@ import numpy as np
 import pytest
 
 from schemas.messages import (
-    CancelRequest,
     Fence,
     FenceZone,
     GoalRequest,
-    LaserScan,
     Mission,
     MissionItem,
     MissionProgress,
     Mode,
-    NavDirective,
-    NavReport,
     NavStatus,
-    PoseInFrame,
-    PreviewRequest,
     Vector3,
     VehicleStatus,
 )
 from services.planner.params import PlannerParams
-from services.planner.planned_vehicle import PlannedVehicle
-from services.planner.planner_service import PlannerService
-from services.planner.scan_placing import ScanPlacer
-from services.planner.tracker_service import FARTHEST
-from tests.runtime.stepping import recall, stale, stepped
+from tests.runtime.stepping import recall, stale
 from tests.services.live_params import all_settable_are_read
+from tests.services.planner.planner_bench import CANCEL, START, Bench, asked, planner, world
 from tests.services.planner.plans import room
-from uvf.maths.se3 import Transform
 from uvf.planning import global_planner
-from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.search.grid_search import GridSearch
-from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
-from uvf.sensors.sweeping import AT_ONCE
-
-READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
-NOTHING = dict.fromkeys(("scan", "report", "keep_out", "mission", "progress", "bounds", "rally"))
-START = (10.0, 20.0, np.pi / 2)
-"""The map lies here in the world, turned: map x is world y."""
-
-
-def planner(explores=False, offset=0.0):
-    """Of a round vehicle of 0.1 m with a lidar ``offset`` [m] ahead of its centre."""
-    placer = ScanPlacer(Transform(np.array((1.0, 0.0, 0.0, 0.0)), np.array((offset, 0.0, 0.1))), AT_ONCE, FARTHEST)
-    return PlannerService(START, PlannedVehicle(RobotFootprint.circle(0.1), placer, 0.45, explores), PlannerParams())
-
-
-CANCEL = CancelRequest(source="test")
-
-
-class Bench:
-    """Steps a planner at 4 Hz in a room of 4 x 3 m; the vehicle stands at ``here`` [m, map] unless it is moved."""
-
-    def __init__(self, explores=False):
-        self.service = planner(explores)
-        self.t = 0.0
-        self.here = (1.0, 1.0)
-        self.yaw = START[2]  # rad, world
-        self.grid = occupancy_grid(room(4.0, 3.0), 0.05, 0.0, 0.0, "v/map", 0.0)
-        self.said = {}
-        self.events = []
-        self.asked = []
-
-    def step(self, n=1, status=READY, goal=(), cancel=(), preview=(), **heard):
-        for _ in range(n):
-            self.t += 0.25
-            pose = PoseInFrame(timestamp=stamp(self.t), pose=planar_pose(*world(*self.here), self.yaw))
-            asks = {"goal": list(goal), "cancel": list(cancel), "preview": list(preview)}
-            told = NOTHING | {"status": status, "pose": [pose], "map": self.grid} | asks | heard
-            self.said = stepped(self.service, self.t, **told)
-            self.events += [e.text for e in self.said["events"]]
-            self.asked += self.said["set_mode"]
-        return self
-
-    @property
-    def state(self):
-        return self.said["nav_status"].state
-
-
-def world(x, y):
-    return (START[0] - y, START[1] + x)
-
-
-def asked(x, y, yaw=float("nan")):
-    position = world(x, y)
-    return GoalRequest(position=Vector3(x=position[0], y=position[1]), yaw=yaw, source="test")
-
-
-def preview(x, y):
-    position = world(x, y)
-    return PreviewRequest(position=Vector3(x=position[0], y=position[1]), source="test")
+from uvf.runtime.messages.convert import occupancy_grid
 
 
 @pytest.mark.parametrize("explores", [False, True])
@@ -240,86 +171,6 @@ def test_a_wanted_heading_is_part_of_the_goal():
     assert bench.said["path"].poses[-1].HasField("orientation")
     bench.here = (2.0, 2.0)
     assert bench.step(2).state == NavStatus.DRIVING
-
-
-RECOVERIES = ["forgetting obstacles farther", "turning round", "forgetting all obstacles", "backing up", "waiting"]
-
-
-def test_a_goal_is_given_up_when_the_vehicle_gets_nowhere_whatever_is_tried():
-    bench = Bench().step(goal=[asked(3.0, 2.0)]).step(4 * 60)
-    told = [event for event in bench.events if "does not move" in event]
-    assert [event.startswith(recovery) for event, recovery in zip(told, RECOVERIES, strict=True)] == [True] * 5
-    assert "goal: goal given up" in bench.events
-    assert bench.said["nav_status"].job == "idle"
-
-
-def test_trembling_about_the_heading_where_angles_wrap_is_not_getting_anywhere():
-    bench = Bench().step(goal=[asked(3.0, 2.0)])
-    for i in range(4 * 60):
-        bench.yaw = START[2] + np.pi + (0.01 if i % 2 else -0.01)
-        bench.step()
-    assert "goal: goal given up" in bench.events
-
-
-def test_what_the_tracker_is_to_do_goes_with_the_path():
-    bench = Bench().step(goal=[asked(3.0, 2.0)])
-    following = bench.said["directive"]
-    assert (following.action, len(bench.said["path"].poses) > 10) == (NavDirective.FOLLOW, True)
-    assert bench.step().said["directive"].number == following.number
-    while bench.state != NavStatus.RECOVERING:
-        bench.step()
-    resetting = bench.said["directive"]
-    assert (resetting.action, resetting.clear_beyond) == (NavDirective.STOP, 3.0)
-    assert resetting.number > following.number
-    assert (bench.state, len(bench.said["path"].poses)) == (NavStatus.RECOVERING, 0)
-    assert bench.said["nav_status"].recoveries == 1
-
-
-def test_a_recovery_ends_when_the_tracker_says_so():
-    bench = Bench().step(goal=[asked(3.0, 2.0)])
-    while bench.said["directive"].action != NavDirective.SPIN:
-        bench.step()
-    spin = bench.said["directive"]
-    bench.step(report=NavReport(number=spin.number - 1, done=True))
-    assert bench.said["directive"].number == spin.number
-    bench.step(report=NavReport(number=spin.number, done=True))
-    assert bench.said["directive"].action == NavDirective.FOLLOW
-
-
-def wall_seen(bench, x):
-    """A scan of a vehicle that looks along the map's x, with a wall across its way ``x`` [m] ahead, as wide as the room but for a gap."""
-    angles = np.radians(np.arange(-60.0, 61.0))
-    across = x * np.tan(angles)
-    ranges = np.where((across > -0.95) & (across < 1.0), x / np.cos(angles), 0.0)
-    return LaserScan(timestamp=stamp(bench.t), start_angle=angles[0], end_angle=angles[-1], ranges=ranges.tolist())
-
-
-def test_what_the_lidar_sees_and_the_map_does_not_is_gone_round():
-    bench = Bench().step(goal=[asked(3.0, 1.0)]).step(2)
-    highest = max(pose.position.x for pose in bench.said["path"].poses)
-    bench.step(scan=wall_seen(bench, 1.0)).step(4)
-    path = np.array([(pose.position.y - START[1], START[0] - pose.position.x) for pose in bench.said["path"].poses])
-    assert highest == pytest.approx(START[0] - 1.0, abs=0.1)
-    assert path[np.abs(path[:, 0] - 2.0) < 0.3, 1].min() > 2.0
-
-
-def test_a_preview_tells_the_way_without_driving_it():
-    bench = Bench().step()
-    bench.step(preview=[preview(3.0, 2.0), preview(0.07, 1.0)])
-    good, bad = bench.said["preview"]
-    assert (good.accepted, bench.said["nav_status"].job) == (True, "idle")
-    assert good.length == pytest.approx(np.hypot(2.0, 1.0), rel=0.1)
-    assert good.duration == pytest.approx(good.length / 0.45)
-    assert good.clearance == pytest.approx(0.9, abs=0.15)
-    assert (good.poses[-1].position.x, good.poses[-1].position.y) == pytest.approx(world(3.0, 2.0))
-    assert (bad.accepted, bad.reason, len(bad.poses)) == (False, "the goal lies in an obstacle", 0)
-
-
-def test_a_flood_of_previews_is_answered_in_part():
-    bench = Bench().step().step(preview=[preview(2.0, 2.0)] * 50)
-    answers = bench.said["preview"]
-    assert [answer.accepted for answer in answers] == [True] * 4 + [False] * 46
-    assert "ask again" in answers[-1].reason
 
 
 def test_standing_while_a_person_drives_is_not_getting_nowhere():
