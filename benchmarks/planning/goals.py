@@ -34,15 +34,21 @@ Row = dict[str, float]
 
 OPTIONS = frozenset({"trials", "seed"})
 VEHICLE = "rover"
-STARTS = {"house": (2.2, 1.3, 0.5), "watkins": (1.0, 1.2, 0.0), "plaza": (0.0, 0.0, 0.0), "world": (0.0, 0.0, 0.0)}
+BEGUN = {
+    "house": ("burger", (2.2, 1.3, 0.5)),
+    "watkins": ("burger_depth", (1.0, 1.2, 0.0)),
+    "plaza": ("my3bot_depth", (5.0, 10.0, 0.0)),
+    "world": ("my3bot_depth", (16.0, 12.0, 0.0)),
+}
+"""Vehicle and start (x, y [m], yaw [rad]) in each world: one that sees what the place has in store, kerbs and pallets too."""
 EXPLORED = 200.0  # s
 GOALS = 50
 PATIENCE = 120.0  # s for a goal
 THERE = 0.3  # m
 APART = 0.15  # m beyond the rover's radius that a goal lies from obstacles
 CELL = 0.05  # m
-WORLDS = tuple(f"goals:{world}" for world in STARTS)
-KINDS = ("sim_ground", "slam", "planner", "autopilot")
+WORLDS = tuple(f"goals:{world}" for world in BEGUN)
+KINDS = ("sim_ground", "sim_camera", "slam", "planner", "autopilot")
 
 
 @dataclass
@@ -156,8 +162,8 @@ def closest(plan: FloorPlan, footprint: RobotFootprint, poses: Floats) -> float:
 def errands(world: str, selection: Selection, data: Path | None) -> Figures:
     """The row of a world."""
     with tempfile.TemporaryDirectory() as name:
-        x, y, yaw = STARTS[world]
-        rover = {"model": "burger", "system_id": 1, "start": {"x": x, "y": y, "yaw": yaw}, "job": {"explore": True}}
+        model, (x, y, yaw) = BEGUN[world]
+        rover = {"model": model, "system_id": 1, "start": {"x": x, "y": y, "yaw": yaw}, "job": {"explore": True}}
         path = Path(name) / f"{world}.yaml"
         path.write_text(yaml.safe_dump({"about": "Errands.", "world": world, "seed": 1, "vehicles": {VEHICLE: rover}}))
         run = Errands(load_scenario(path), 1 if selection.seed is None else selection.seed)
@@ -176,4 +182,4 @@ def errands(world: str, selection: Selection, data: Path | None) -> Figures:
 
 def cases(selection: Selection) -> dict[str, Case]:
     """A case for each world."""
-    return dict(zip(WORLDS, (partial(errands, world, selection) for world in STARTS), strict=True))
+    return dict(zip(WORLDS, (partial(errands, world, selection) for world in BEGUN), strict=True))

@@ -154,7 +154,7 @@ class _Trial:
             cells[max(rows.start, 0) : rows.stop, max(columns.start, 0) : columns.stop] = 100
         settings = self._controller.settings
         body = PlannedBody(self._controller.footprint.padded(settings.margin), settings.inflation, settings.cost_travel_multiplier)
-        routes = GlobalRoutes(GlobalPlanner(body), self._controller.layer)
+        routes = GlobalRoutes(GlobalPlanner(body), self._controller.layer, self._controller.hidden)
         routes.take(cells, (RESOLUTION, origin))
         return routes
 

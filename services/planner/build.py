@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from services.planner.obstacle_sensors import ObstacleSensors
 from services.planner.params import PlannerParams
 from services.planner.planned_vehicle import PlannedVehicle
 from services.planner.planner_service import PlannerService
@@ -12,7 +13,8 @@ from uvf.maths.se2 import Pose2
 from uvf.maths.se3 import Transform
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.urdf.model import load_urdf
-from uvf.models.urdf.outline import plan_outline
+from uvf.models.urdf.outline import highest, plan_outline
+from uvf.models.urdf.robot import UrdfModel
 from uvf.models.vehicle.file import GroundBody
 from uvf.models.yaml_data import BadInput
 from uvf.planning.costmap.footprint import RobotFootprint
@@ -39,24 +41,27 @@ def _hosts(member: MissionVehicle) -> list[ServiceInstance]:
     if body is None or lidar is None:
         raise BadInput(f"{member.folder / 'vehicle.yaml'}: the planner needs 'ground:' and sensors: lidar")
     world_from_map = Pose2(start.x, start.y, start.yaw)
-    base_from_lidar = Transform(from_euler(*lidar.mount.rpy), np.array(lidar.mount.xyz))
-    sweeping, footprint = sweeping_of(lidar), _footprint(member, body)
+    model = load_urdf(member.folder / body.urdf)
+    footprint, top = _footprint(model, body), max(highest(model), lidar.mount.xyz[2])
     planner, tracker = member.params("planner", PlannerParams), member.params("tracker", TrackerParams)
     speed = min(tracker.speed, body.max_linear)
 
+    def sensors_of() -> ObstacleSensors:
+        placer = ScanPlacer(Transform(from_euler(*lidar.mount.rpy), np.array(lidar.mount.xyz)), sweeping_of(lidar), FARTHEST)
+        return ObstacleSensors(placer, footprint, member.file.sensors, top)
+
     def planner_service() -> PlannerService:
-        placer = ScanPlacer(base_from_lidar, sweeping, FARTHEST)
-        return PlannerService(world_from_map, PlannedVehicle(footprint, placer, speed, member.entry.job.explore), planner)
+        return PlannerService(world_from_map, PlannedVehicle(footprint, sensors_of(), speed, member.entry.job.explore), planner)
 
     def tracker_service() -> TrackerService:
-        return TrackerService(body, footprint, base_from_lidar, tracker, sweeping)
+        return TrackerService(body, footprint, sensors_of(), tracker)
 
     return [ServiceInstance(PlannerService, planner_service, member.name), ServiceInstance(TrackerService, tracker_service, member.name)]
 
 
-def _footprint(member: MissionVehicle, body: GroundBody) -> RobotFootprint:
+def _footprint(model: UrdfModel, body: GroundBody) -> RobotFootprint:
     """The outline of the URDF's collision shapes, or the circle of vehicle.yaml where it has none."""
-    outline = plan_outline(load_urdf(member.folder / body.urdf))
+    outline = plan_outline(model)
     return RobotFootprint.circle(body.radius) if outline is None else RobotFootprint.polygon(outline)
 
 

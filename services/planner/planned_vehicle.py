@@ -2,15 +2,15 @@
 
 from dataclasses import dataclass
 
-from services.planner.scan_placing import ScanPlacer
+from services.planner.obstacle_sensors import ObstacleSensors
 from uvf.planning.costmap.footprint import RobotFootprint
 
 
 @dataclass(frozen=True)
 class PlannedVehicle:
-    """Outline, lidar, speed on straight parts [m/s], and whether it explores."""
+    """Outline, sensors, speed on straight parts [m/s], and whether it explores."""
 
     footprint: RobotFootprint
-    placer: ScanPlacer
+    sensors: ObstacleSensors
     speed: float
     explores: bool

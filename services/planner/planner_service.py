@@ -7,7 +7,10 @@ from numpy.typing import NDArray
 
 from schemas import topics
 from schemas.messages import (
+    CameraCalibration,
     CancelRequest,
+    CompressedImage,
+    Contact,
     Event,
     Fence,
     GoalRequest,
@@ -25,6 +28,7 @@ from schemas.messages import (
     PreviewReply,
     PreviewRequest,
     RallyPoints,
+    Range,
     Reply,
     VehicleStatus,
 )
@@ -32,29 +36,26 @@ from services.planner.directives import directive_message, path_message, report_
 from services.planner.exploration_goals import ExplorationGoals
 from services.planner.goal_desk import GoalDesk
 from services.planner.jobs import IDLE, Goal, Job, Orders, ReturnPoints, choose, home_of, mission_target, not_now
-from services.planner.masks import MaskReader
+from services.planner.obstacle_sensors import OtherReadings
 from services.planner.params import PlannerParams
 from services.planner.planned_vehicle import PlannedVehicle
+from services.planner.planning_ground import PlanningGround
 from uvf.maths.rotations import wrap
-from uvf.maths.se2 import Pose2, compose, inverse, transform
+from uvf.maths.se2 import Pose2, compose
 from uvf.planning.costmap.inflation import Inflation
-from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
 from uvf.planning.frontiers import FrontierWeights
 from uvf.planning.global_planner import NO_PLACE, GlobalPlanner, PlannedBody
-from uvf.planning.navigation.directive import Directive
-from uvf.planning.navigation.global_routes import GlobalRoutes
 from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings, Status
 from uvf.planning.navigation.progress import ProgressSettings
 from uvf.runtime.contract.declaration import Reads, Writes, answers, call, every, optional, replies, request, topic
 from uvf.runtime.contract.service import Answer, Service
-from uvf.runtime.messages.convert import occupancy_cells, pose2_of, seconds, stamp
+from uvf.runtime.messages.convert import stamp
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
 
 FRONTIER_VIEW = 0.4  # m from a frontier, from where it is seen well enough
-SIZE, RESOLUTION = 8.0, 0.05  # m, of the window in which obstacles are remembered that the map does not show
-LIFETIME = 30.0  # s that such an obstacle is remembered without being seen
+EXPLORING_RECOVERIES = 2  # before another goal is chosen: there are more of them
 AGAIN = 10.0  # s after which a place of the mission, or home, is tried again where nobody has changed the mode
 PUSHED = 3.0  # times the tolerance from a place that was reached, from where it is driven to again
 STATES = {
@@ -75,11 +76,15 @@ class PlannerService(Service):
     given_up = "the vehicle stands where it would drive by itself"
 
     class Inputs(Reads):
-        """Poses, map, scan, the tracker's report, mission, and requests for goals."""
+        """Poses, map, all that sees or feels obstacles, the tracker's report, mission, and requests for goals."""
 
         pose: list[PoseInFrame] = every(topics.POSE)
         map: Grid = topic(topics.MAP)
         scan: LaserScan | None = optional(topics.SCAN)
+        depth: list[CompressedImage] = optional(every(topics.DEPTH))
+        info: CameraCalibration | None = optional(topics.CAMERA_INFO)
+        sonar: list[Range] = optional(every(topics.SONAR))
+        contact: list[Contact] = optional(every(topics.CONTACT))
         report: NavReport | None = optional(topics.NAV_REPORT)
         keep_out: Grid | None = optional(topics.KEEP_OUT)
         status: VehicleStatus | None = optional(topics.STATUS)
@@ -113,18 +118,13 @@ class PlannerService(Service):
 
     def __init__(self, world_from_map: Pose2, vehicle: PlannedVehicle, params: PlannerParams) -> None:
         self.params = params
-        self._world_from_map, self._map_from_world = world_from_map, inverse(world_from_map)
+        self._world_from_map = world_from_map
         self._vehicle, self._footprint = vehicle, vehicle.footprint
-        self._placer = vehicle.placer
-        self._here: Pose2 | None = None
-        self._layer = ObstacleLayer(SIZE, RESOLUTION, LIFETIME)
         self._planner = GlobalPlanner(self._body)
-        self._routes = GlobalRoutes(self._planner, self._layer)
-        self._navigator = Navigator(self._routes, self._patience)
-        self._keep_out = MaskReader()
+        self._ground = PlanningGround(self._planner, vehicle.sensors, world_from_map)
+        self._navigator = Navigator(self._ground.routes, self._patience)
         self._exploration = ExplorationGoals(self._planner, self._taste)
         self._return_points = ReturnPoints()
-        self._map_stamp = -1.0
         self._job: Job = IDLE
         self._goal: Goal | None = None
         self._target: Point | None = None
@@ -136,22 +136,19 @@ class PlannerService(Service):
         self._try_at = inf
         """When a place that was given up is tried again."""
         self._told = 0
-        self._cleared = -1
         self._asks: list[ModeRequest] = []
         self._events: list[Event] = []
         self._desk = GoalDesk(self._planner, world_from_map, vehicle.speed)
 
     def step(self, t: float, now: Inputs) -> Outputs:
         """One cycle at ``t`` [s, simulation]: chooses the job and its place, plans, watches the progress, and recovers."""
-        self._move(now.pose)
-        if self._here is None:
+        self._ground.move(now.pose)
+        here, self._desk.bounds = self._ground.here, now.bounds
+        if here is None:
             return self.stale(t, ("pose",))
-        here, self._desk.bounds = self._here, now.bounds
         self._fit()
-        mask = self._keep_out.take(now.keep_out)
-        if mask is not None and self._keep_out.is_new:
-            self._routes.keep_out(mask, self._world_from_map)
-        changed = self._look(now.map, now.scan, here)
+        self._ground.keep_out(now.keep_out)
+        changed = self._ground.look(t, now.map, now.scan, OtherReadings(now.depth, now.info, now.sonar, now.contact))
         goal_replies = self._ask_all(t, here, now.goal, now.status)
         place = compose(self._world_from_map, here)[:2]
         home = home_of(now.status) or self._world_from_map[:2]
@@ -165,7 +162,7 @@ class PlannerService(Service):
         if now.status is None or now.status.command_source != "planner":
             self._navigator.pause(t, here)
         directive = self._navigator.step(t, here, report_of(now.report))
-        self._heed(directive, here)
+        self._ground.heed(directive)
         self._follow_up(t)
         self._tell_recoveries()
         events, self._events = self._events, []
@@ -203,7 +200,7 @@ class PlannerService(Service):
     def _body(self) -> PlannedBody:
         params = self.params
         inflation = Inflation(params.inflation_radius, params.cost_scaling_factor)
-        offset = self._placer.offset
+        offset = self._vehicle.sensors.placer.offset
         return PlannedBody(self._footprint.padded(params.margin), inflation, params.cost_travel_multiplier, offset)
 
     @property
@@ -222,25 +219,6 @@ class PlannerService(Service):
         self._navigator.fit(self._patience)
         if self._planner.fit(self._body):
             self._navigator.replan()
-
-    def _move(self, poses: list[PoseInFrame]) -> None:
-        for message in poses:
-            self._here = compose(self._map_from_world, pose2_of(message.pose))
-            self._placer.move(seconds(message.timestamp), self._here)
-
-    def _look(self, grid: Grid, scan: LaserScan | None, here: Pose2) -> bool:
-        """Takes map and scan; whether there is something new to plan by."""
-        taken_at, new = seconds(grid.timestamp), False
-        if taken_at != self._map_stamp:
-            self._map_stamp, new = taken_at, True
-            self._routes.take(occupancy_cells(grid), (grid.cell_size.x, (grid.pose.position.x, grid.pose.position.y)))
-        if scan is not None and (seen := self._placer.place(scan)) is not None:
-            self._layer.recentre((here[0], here[1]))
-            eye = transform(seen.pose, np.array((seen.eye,)))[0]
-            hits = (seen.ranges > 0.0) & (seen.ranges <= self._placer.farthest)
-            self._layer.observe(BeamObservation(seen.t, seen.t, (eye[0], eye[1]), transform(seen.pose, seen.points), hits))
-            self._layer.forget(seen.t)
-        return self._routes.look(here[:2]) or new
 
     def _ask_all(self, t: float, here: Pose2, requests: list[GoalRequest], status: VehicleStatus | None) -> list[Reply]:
         """Of several goals in one step the last that can be driven to counts; only that one is told of."""
@@ -304,9 +282,10 @@ class PlannerService(Service):
             self._navigator.cancel(t)
             self._reason = NO_PLACE
             return
-        self._routes.allow_unknown = self._job.allow_unknown
+        self._ground.routes.allow_unknown = self._job.allow_unknown
         yaw = None if self._job.yaw is None else wrap(self._job.yaw - self._world_from_map[2])
-        self._navigator.start(t, NavigationGoal(*target, yaw, tolerance))
+        most = EXPLORING_RECOVERIES if self._job.name == "explore" else NavigationGoal.most_recoveries
+        self._navigator.start(t, NavigationGoal(*target, yaw, tolerance, most))
 
     def _is_pushed_away(self, here: Pose2) -> bool:
         """Whether the vehicle was where it should be, and is no longer."""
@@ -324,12 +303,6 @@ class PlannerService(Service):
             self._target, self._reason = None, reason
         elif target != self._target or not self._navigator.is_busy:
             self._go(t, target, self.params.look_tolerance)
-
-    def _heed(self, directive: Directive, here: Pose2) -> None:
-        """Forgets what the tracker is to forget."""
-        if directive.clear_beyond is not None and directive.number != self._cleared:
-            self._cleared = directive.number
-            self._layer.clear(directive.clear_beyond, (here[0], here[1]))
 
     def _follow_up(self, t: float) -> None:
         """What follows when the place is reached, or given up."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import LaserScan
-from uvf.maths.se2 import Pose2, PoseHistory, inverse, transform
+from uvf.maths.se2 import Pose2, PoseHistory, compose, inverse, transform
 from uvf.maths.se3 import Transform, from_above
 from uvf.runtime.messages.convert import scan_rays, seconds
 from uvf.sensors.sweeping import Sweeping
@@ -16,6 +16,7 @@ Floats = NDArray[np.float64]
 
 HISTORY = 100  # poses kept, 2 s: a sweep may take one
 MOST_BEAMS = 1440
+LATELY = 0.3  # s over which the motion is taken
 MOST = 1000.0  # m, beyond which no lidar sees
 
 
@@ -40,6 +41,9 @@ class ScanPlacer:
         """farthest: m, at which beams without return end."""
         self._base_from_lidar, self._sweeping, self.farthest = base_from_lidar, sweeping, farthest
         self._history = PoseHistory(HISTORY)
+        self.newest: Pose2 | None = None
+        self.newest_at = -np.inf
+        """Time [s] of the newest pose."""
         self.t = -np.inf
         """Time [s] of the last scan that was placed."""
 
@@ -51,6 +55,21 @@ class ScanPlacer:
     def move(self, t: float, pose: Pose2) -> None:
         """The vehicle was at ``pose`` at ``t`` [s]."""
         self._history.add(t, pose)
+        if t > self.newest_at:
+            self.newest, self.newest_at = pose, t
+
+    def at(self, t: float) -> Pose2 | None:
+        """Where the vehicle was at ``t`` [s]; None when that is too long ago, or not known yet."""
+        return self._history.at(t)
+
+    @property
+    def motion(self) -> tuple[float, float]:
+        """Its lately driven speed [m/s], backwards negative, and turn rate [rad/s]; 0 where it is not known."""
+        before = self._history.at(self.newest_at - LATELY)
+        if self.newest is None or before is None:
+            return 0.0, 0.0
+        x, _, turned = compose(inverse(before), self.newest)
+        return x / LATELY, turned / LATELY
 
     def place(self, scan: LaserScan) -> PlacedScan | None:
         """The scan, if it is newer than the last one and the poses reach to its end."""

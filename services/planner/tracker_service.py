@@ -8,12 +8,25 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.messages import DriveCommand, Event, Grid, LaserScan, NavDirective, NavReport, Odometry, PoseInFrame, PosesInFrame
+from schemas.messages import (
+    CameraCalibration,
+    CompressedImage,
+    Contact,
+    DriveCommand,
+    Event,
+    Grid,
+    LaserScan,
+    NavDirective,
+    NavReport,
+    Odometry,
+    PoseInFrame,
+    PosesInFrame,
+    Range,
+)
 from services.planner.directives import directive_of, report_message
 from services.planner.masks import MaskReader
-from services.planner.scan_placing import ScanPlacer
+from services.planner.obstacle_sensors import ObstacleSensors, OtherReadings
 from uvf.maths.se2 import IDENTITY, Pose2
-from uvf.maths.se3 import Transform
 from uvf.models.keys import key, plain
 from uvf.models.params import Params
 from uvf.models.vehicle.file import GroundBody
@@ -30,7 +43,6 @@ from uvf.planning.navigation.execution import Executor
 from uvf.runtime.contract.declaration import Reads, Writes, every, optional, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import pose2_of, seconds, stamp, yaw_of
-from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
 Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
@@ -69,13 +81,17 @@ class TrackerService(Service):
     fixed_params = frozenset(("local_planner",))
 
     class Inputs(Reads):
-        """Directive and path, poses, odometry, the lidar's scan, and masks drawn over the map."""
+        """Directive and path, poses, odometry, all that sees or feels obstacles, and masks drawn over the map."""
 
         directive: NavDirective = topic(topics.NAV_DIRECTIVE)
         path: PosesInFrame = topic(topics.PATH)
         pose: list[PoseInFrame] = every(topics.POSE)
         odometry: Odometry | None = optional(topics.ODOMETRY)
         scan: LaserScan = topic(topics.SCAN)
+        depth: list[CompressedImage] = optional(every(topics.DEPTH))
+        info: CameraCalibration | None = optional(topics.CAMERA_INFO)
+        sonar: list[Range] = optional(every(topics.SONAR))
+        contact: list[Contact] = optional(every(topics.CONTACT))
         keep_out: Grid | None = optional(topics.KEEP_OUT)
         speed_map: Grid | None = optional(topics.SPEED_MAP)
 
@@ -88,23 +104,16 @@ class TrackerService(Service):
 
     params: TrackerParams
 
-    def __init__(
-        self,
-        body: GroundBody,
-        footprint: RobotFootprint,
-        base_from_lidar: Transform,
-        params: TrackerParams,
-        sweeping: Sweeping = AT_ONCE,
-    ) -> None:
+    def __init__(self, body: GroundBody, footprint: RobotFootprint, sensors: ObstacleSensors, params: TrackerParams) -> None:
         self.params = params
         self._body, self._footprint = body, footprint
-        self._placer = ScanPlacer(base_from_lidar, sweeping, FARTHEST)
+        self._sensors, self._placer = sensors, sensors.placer
         self._pose: Pose2 = IDENTITY
         self._velocity = (0.0, 0.0)
         self._made_for = params, 1.0
         self._keep_out, self._speed_map = MaskReader(), MaskReader()
         self._executor = Executor(self._controller())
-        self._told_at = -np.inf
+        self._told_at = self._complained_at = -np.inf
 
     def step(self, t: float, now: Inputs) -> Outputs:
         """One cycle at ``t`` [s, simulation]: what the directive says, slowed before obstacles that the scan shows."""
@@ -112,10 +121,15 @@ class TrackerService(Service):
             self._pose = pose2_of(message.pose)
             self._placer.move(seconds(message.timestamp), self._pose)
         self._heed_params(self._share(now.speed_map))
+        controller = self._executor.controller
+        self._sensors.take(controller.age, OtherReadings(now.depth, now.info, now.sonar, now.contact), controller.hidden)
+        if self._sensors.bump is not None:
+            self._executor.draw_back(t, self._pose, self._sensors.bump)
         if (seen := self._placer.place(now.scan)) is not None:
-            self._executor.controller.see(seen.t, seen.pose, seen.eye, seen.points, seen.ranges)
+            self._sensors.see(seen)
+            controller.see(seen.t, seen.pose, seen.eye, seen.points, seen.ranges)
             if (mask := self._keep_out.take(now.keep_out)) is not None:
-                self._executor.controller.keep_out(mask.kept_out_near(self._pose[:2], KEEP_OUT_REACH))
+                controller.keep_out(mask.kept_out_near(self._pose[:2], KEEP_OUT_REACH))
         if t - self._placer.t > SCAN_MAX_AGE:
             return self.stale(t, ("scan",))
         if now.odometry is not None:
@@ -125,7 +139,7 @@ class TrackerService(Service):
         return self.Outputs(
             drive=DriveCommand(timestamp=stamp(t), linear=self._velocity[0], angular=self._velocity[1]),
             report=report_message(t, report),
-            events=self._obstacle(t) if report.how in (Drive.STOPPED, Drive.NO_VALID_CONTROL) else [],
+            events=[*self._felt(t), *(self._obstacle(t) if report.how in (Drive.STOPPED, Drive.NO_VALID_CONTROL) else [])],
         )
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
@@ -146,7 +160,7 @@ class TrackerService(Service):
             return
         self._made_for, old = wanted, self._executor.controller
         controller = self._controller()
-        controller.layer, controller.moving = old.layer, old.moving
+        controller.layer, controller.hidden, controller.moving = old.layer, old.hidden, old.moving
         self._executor.controller = controller
 
     def _controller(self) -> LocalController:
@@ -176,12 +190,24 @@ class TrackerService(Service):
             planner = make_local_planner(params.local_planner, limits, self._footprint)
         return LocalController(self._footprint, limits, planner, settings)
 
+    def _felt(self, t: float) -> list[Event]:
+        """A touch, and what could not be read."""
+        bump = [_event(t, "touched something", "bumper")] if self._sensors.bump is not None else []
+        if not self._sensors.faults or t - self._complained_at < EVENTS_EVERY:
+            return bump
+        self._complained_at = t
+        return [*bump, _event(t, "a depth picture is left out", self._sensors.faults[0], Event.WARNING)]
+
     def _obstacle(self, t: float) -> list[Event]:
         """What to tell; nothing while the last time is not long ago, for one obstacle blocks and frees the way often."""
         if t - self._told_at < EVENTS_EVERY:
             return []
         self._told_at = t
-        return [Event(timestamp=stamp(t), severity=Event.NOTICE, text="obstacle ahead", cause="lidar", source="planner")]
+        return [_event(t, "obstacle ahead", "lidar")]
+
+
+def _event(t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> Event:
+    return Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source="planner")
 
 
 def _directive(message: NavDirective, path: PosesInFrame) -> Directive:

@@ -5,6 +5,7 @@ import pytest
 
 from uvf.maths.se2 import Pose2
 from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.costmap.hidden_obstacles import HiddenObstacles
 from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.costmap.obstacle_layer import ObstacleLayer
 from uvf.planning.costmap.zone_mask import ZoneMask
@@ -46,7 +47,11 @@ def test_paths_keep_out_of_what_is_drawn_in_another_frame(turn):
     in_map = (centres - mask_from_map[:2]) @ np.array(((np.cos(turn), -np.sin(turn)), (np.sin(turn), np.cos(turn))))
     zone = (np.abs(in_map[:, 0] - 2.0) < 0.3) & (in_map[:, 1] < 2.0)
     values[zone.reshape(values.shape)] = 100
-    routes = GlobalRoutes(GlobalPlanner(PlannedBody(RobotFootprint.circle(0.1), Inflation(0.3, 5.0))), ObstacleLayer(8.0, 0.05))
+    routes = GlobalRoutes(
+        GlobalPlanner(PlannedBody(RobotFootprint.circle(0.1), Inflation(0.3, 5.0))),
+        ObstacleLayer(8.0, 0.05),
+        HiddenObstacles(8.0, 0.05, 30.0),
+    )
     routes.take(room(), (0.05, (0.0, 0.0)))
     goal = NavigationGoal(3.5, 1.0)
     straight = routes.plan(Pose2(0.5, 1.0, 0.0), goal).path

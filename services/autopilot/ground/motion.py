@@ -63,6 +63,7 @@ class StuckDetector:
         self.stuck_for = 0.0
         self.how = ""
         self._wheels = wheels
+        self._asked = LowPass(LAG), LowPass(LAG)
         self._ahead = LowPass(POSE_LAG)
         self._rolls = LowPass(POSE_LAG)
         self._here: GroundPose | None = None
@@ -76,7 +77,8 @@ class StuckDetector:
         """One cycle of ``dt`` [s]. asked: commanded rim speeds [m/s]; here: pose in the world frame."""
         slips = self._slips(here, dt)
         wheels = self._wheels
-        pairs = ((asked.left, wheels.left.value), (asked.right, wheels.right.value))
+        left, right = (lag.step(speed, dt) for lag, speed in zip(self._asked, asked, strict=True))  # as late as what is measured
+        pairs = ((left, wheels.left.value), (right, wheels.right.value))
         if wheels.left.value is None or max(map(abs, asked)) < ASKED:
             return
         fast = any(abs(a) >= ASKED and abs(v or 0.0) < TURNS * abs(a) for a, v in pairs)

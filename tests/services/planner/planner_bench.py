@@ -14,25 +14,24 @@ from schemas.messages import (
 from services.planner.params import PlannerParams
 from services.planner.planned_vehicle import PlannedVehicle
 from services.planner.planner_service import PlannerService
-from services.planner.scan_placing import ScanPlacer
-from services.planner.tracker_service import FARTHEST
 from tests.runtime.stepping import stepped
 from tests.services.planner.plans import room
+from tests.services.planner.seeing import NO_OTHERS, NOTHING_ELSE, sensors_of
 from uvf.maths.se3 import Transform
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
-from uvf.sensors.sweeping import AT_ONCE
 
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
-NOTHING = dict.fromkeys(("scan", "report", "keep_out", "mission", "progress", "bounds", "rally"))
+NOTHING = NOTHING_ELSE | dict.fromkeys(("scan", "report", "keep_out", "mission", "progress", "bounds", "rally"))
 START = (10.0, 20.0, np.pi / 2)
 """The map lies here in the world, turned: map x is world y."""
 
 
-def planner(explores=False, offset=0.0):
+def planner(explores=False, offset=0.0, sensors=NO_OTHERS):
     """Of a round vehicle of 0.1 m with a lidar ``offset`` [m] ahead of its centre."""
-    placer = ScanPlacer(Transform(np.array((1.0, 0.0, 0.0, 0.0)), np.array((offset, 0.0, 0.1))), AT_ONCE, FARTHEST)
-    return PlannerService(START, PlannedVehicle(RobotFootprint.circle(0.1), placer, 0.45, explores), PlannerParams())
+    footprint = RobotFootprint.circle(0.1)
+    seeing = sensors_of(footprint, Transform(np.array((1.0, 0.0, 0.0, 0.0)), np.array((offset, 0.0, 0.1))), sensors=sensors)
+    return PlannerService(START, PlannedVehicle(footprint, seeing, 0.45, explores), PlannerParams())
 
 
 CANCEL = CancelRequest(source="test")
@@ -41,8 +40,8 @@ CANCEL = CancelRequest(source="test")
 class Bench:
     """Steps a planner at 4 Hz in a room of 4 x 3 m; the vehicle stands at ``here`` [m, map] unless it is moved."""
 
-    def __init__(self, explores=False):
-        self.service = planner(explores)
+    def __init__(self, explores=False, sensors=NO_OTHERS):
+        self.service = planner(explores, sensors=sensors)
         self.t = 0.0
         self.here = (1.0, 1.0)
         self.yaw = START[2]  # rad, world

@@ -10,18 +10,16 @@ from schemas.messages import Grid, LaserScan, PoseInFrame, PosesInFrame
 from services.planner.params import PlannerParams
 from services.planner.planned_vehicle import PlannedVehicle
 from services.planner.planner_service import PlannerService
-from services.planner.scan_placing import ScanPlacer
-from services.planner.tracker_service import FARTHEST, TrackerParams, TrackerService
+from services.planner.tracker_service import TrackerParams, TrackerService
 from tests.services.autopilot.ground.test_service import BODY
 from tests.services.planner.plans import room
-from uvf.maths import se3
+from tests.services.planner.seeing import sensors_of
 from uvf.maths.se2 import IDENTITY
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
-from uvf.sensors.sweeping import AT_ONCE
 
 NAN = math.nan
 FOOTPRINT = RobotFootprint.circle(0.1)
@@ -49,10 +47,9 @@ class Bench:
 
     def __init__(self):
         self.bus, self.told, self.t = LocalBus(), [], 0.0
-        placer = ScanPlacer(se3.IDENTITY, AT_ONCE, FARTHEST)
         makers = {
-            PlannerService: lambda: PlannerService(IDENTITY, PlannedVehicle(FOOTPRINT, placer, 0.45, True), PlannerParams()),
-            TrackerService: lambda: TrackerService(BODY, FOOTPRINT, se3.IDENTITY, TrackerParams()),
+            PlannerService: lambda: PlannerService(IDENTITY, PlannedVehicle(FOOTPRINT, sensors_of(FOOTPRINT), 0.45, True), PlannerParams()),
+            TrackerService: lambda: TrackerService(BODY, FOOTPRINT, sensors_of(FOOTPRINT), TrackerParams()),
         }
         self.shells = [ServiceRunner(ServiceInstance(kind, make, "v"), self.bus, self.told.append) for kind, make in makers.items()]
 

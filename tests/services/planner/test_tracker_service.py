@@ -9,6 +9,7 @@ from services.planner.tracker_service import TrackerParams, TrackerService
 from tests.runtime.stepping import stale, stepped
 from tests.services.autopilot.ground.test_service import BODY
 from tests.services.live_params import all_settable_are_read
+from tests.services.planner.seeing import NO_OTHERS, NOTHING_ELSE, sensors_of
 from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2, transform
 from uvf.maths.se3 import IDENTITY, Transform
@@ -29,15 +30,15 @@ def scan(t, ahead, yaw=0.0, around=0.0):
 
 FOOTPRINT = RobotFootprint.circle(BODY.radius)
 EAST = PosesInFrame(poses=[Pose(position=Vector3(x=0.1 * i)) for i in range(31)])
-NOTHING = dict.fromkeys(("odometry", "keep_out", "speed_map"))
+NOTHING = NOTHING_ELSE | dict.fromkeys(("odometry", "keep_out", "speed_map"))
 FOLLOW = NavDirective(number=1, action=NavDirective.FOLLOW)
 
 
 class TrackerBench:
     """A vehicle that starts at the world's origin and looks east; a wall ``ahead`` [m] of it there, the path leads 3 m east."""
 
-    def __init__(self, base_from_lidar=IDENTITY, **params):
-        self.service = TrackerService(BODY, FOOTPRINT, base_from_lidar, TrackerParams(**params))
+    def __init__(self, base_from_lidar=IDENTITY, sensors=NO_OTHERS, **params):
+        self.service = TrackerService(BODY, FOOTPRINT, sensors_of(FOOTPRINT, base_from_lidar, sensors=sensors), TrackerParams(**params))
         self.t = 0.0
         self.pose = np.zeros(3)
         self.commands = []
@@ -146,7 +147,7 @@ def test_what_a_scanner_sees_that_hangs_upside_down_is_on_the_side_where_it_is()
     """Its right is the vehicle's left: what it sees there is kept in mind as an obstacle on the left."""
     beside = LaserScan(timestamp=stamp(1.0), start_angle=-1.0, end_angle=-0.8, ranges=[0.5] * 9)
     poses = [PoseInFrame(timestamp=stamp(1.0), pose=planar_pose(0.0, 0.0, 0.0))]
-    service = TrackerService(BODY, FOOTPRINT, Transform(from_euler(np.pi, 0.0, 0.0), np.zeros(3)), TrackerParams())
+    service = TrackerService(BODY, FOOTPRINT, sensors_of(FOOTPRINT, Transform(from_euler(np.pi, 0.0, 0.0), np.zeros(3))), TrackerParams())
     stepped(service, 1.0, directive=FOLLOW, path=EAST, pose=poses, scan=beside, **NOTHING)
     seen = service._executor.controller.layer.lethal_near((0.0, 0.0), 1.0)
     assert len(seen) >= 2 and (seen[:, 1] > 0.3).all()
@@ -194,7 +195,7 @@ def test_a_sweep_counts_when_the_pose_at_its_last_beam_is_known():
 
 def test_a_slow_scan_is_as_old_as_its_last_beam():
     wall = scan(1.0, ahead=3.0)
-    service = TrackerService(BODY, FOOTPRINT, IDENTITY, TrackerParams(), Sweeping(0.5))
+    service = TrackerService(BODY, FOOTPRINT, sensors_of(FOOTPRINT, sweeping=Sweeping(0.5)), TrackerParams())
     told = NOTHING | {"directive": FOLLOW, "path": EAST, "scan": wall}
     poses = [PoseInFrame(timestamp=stamp(0.02 * k), pose=planar_pose(0.0, 0.0, 0.0)) for k in range(100)]
     assert stepped(service, 2.0, pose=poses, **told)["drive"].linear > 0.05

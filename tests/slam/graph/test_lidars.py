@@ -149,3 +149,20 @@ def test_people_around_a_standing_vehicle_do_not_push_it():
         return replace(first, ranges=ranges)
 
     assert np.hypot(*mapped(changed(driven, crowd)).run.final[:, :2].T).max() < 0.05
+
+
+def test_where_little_is_seen_what_walks_does_not_carry_the_map_along():
+    """A short lidar in the open, past a person who walks, and a post: the vehicle drives on by its odometry."""
+    beams = Beams((0.0, 0.0), np.radians(np.arange(360.0)), 0.1, 3.5)
+    slam, at = GraphSlam(), Pose2(0.0, 0.0, 0.0)
+    for k in range(100):
+        t = 0.2 * k
+        at = Pose2(0.08 * k, 0.0, 0.0)
+        ranges = np.zeros(360)
+        for x, y, radius in ((1.0 + 0.1 * k, 1.2, 0.25), (3.0, -1.5, 0.1)):
+            bearing, away = np.arctan2(y - at.y, x - at.x), np.hypot(x - at.x, y - at.y)
+            off = np.abs(np.angle(np.exp(1j * (beams.bearings - bearing))))
+            seen = (off < np.arcsin(radius / away)) & (away < 3.5)
+            ranges[seen] = away * np.cos(off[seen]) - np.sqrt(radius**2 - (away * np.sin(off[seen])) ** 2)
+        estimate = slam.add(Reading(t, ranges, beams, at))
+    assert np.hypot(estimate.map_from_base.x - at.x, estimate.map_from_base.y - at.y) < 0.05

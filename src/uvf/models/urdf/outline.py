@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 from scipy.spatial import HalfspaceIntersection
 
 from uvf.models.shapes.mesh import placed, reach
+from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.robot import UrdfModel
 
 Floats = NDArray[np.float64]
@@ -19,8 +20,7 @@ def plan_outline(model: UrdfModel) -> Floats | None:
 
     base_link lies inside of it, at least a centimetre from each side. Raises BadInput for a mesh that cannot be read.
     """
-    poses = model.link_poses()
-    solids = [placed(solid, poses[name]) for name, link in model.links.items() if name in poses for solid in link.collisions]
+    solids = _solids(model)
     if not solids:
         return None
     angles = np.arange(SIDES) * (2.0 * np.pi / SIDES)
@@ -28,3 +28,14 @@ def plan_outline(model: UrdfModel) -> Floats | None:
     distances = np.maximum(np.max([reach(solid, normals) for solid in solids], axis=0), LEAST)
     corners: Floats = HalfspaceIntersection(np.column_stack((normals[:, :2], -distances)), np.zeros(2)).intersections
     return corners
+
+
+def highest(model: UrdfModel) -> float:
+    """Height [m] of the top of all collision shapes above base_link; 0 where there are none. Raises BadInput as ``plan_outline``."""
+    up = np.array(((0.0, 0.0, 1.0),))
+    return max((float(reach(solid, up)[0]) for solid in _solids(model)), default=0.0)
+
+
+def _solids(model: UrdfModel) -> list[Solid]:
+    poses = model.link_poses()
+    return [placed(solid, poses[name]) for name, link in model.links.items() if name in poses for solid in link.collisions]

@@ -41,16 +41,16 @@ def mark_ends(cells: Bytes, seen: Floats, hit: Stamps, frame: Frame, ends: Float
 
 
 @compiled
-def clear_beams(cells: Bytes, freed: Stamps, hit: Stamps, frame: Frame, beams: tuple[Point, Floats], stamps: tuple[int, int]) -> None:
+def clear_beams(cells: Bytes, freed: Stamps, hit: Stamps, frame: Frame, beams: tuple[Floats, Floats], stamps: tuple[int, int]) -> None:
     """Sets the cells that beams pass to free, ``freed`` at a time, without those in which they end and those that the same scan has hit.
 
-    cells: (rows, columns); beams: from the eye to their ends (n, 2) [m], which may lie outside; stamps: time [ms], number of the scan.
-    Bresenham's line from the eye's cell to the end's; what lies off the grid is passed over.
+    cells: (rows, columns); beams: from their starts to their ends (n, 2) [m], which may lie outside; stamps: time [ms], number of the
+    scan. Bresenham's line from the start's cell to the end's; what lies off the grid is passed over.
     """
-    eye, ends = beams
+    starts, ends = beams
     rows, columns = cells.shape
-    r0, c0 = int(np.floor((eye[1] - frame[1]) / frame[2])), int(np.floor((eye[0] - frame[0]) / frame[2]))
     for k in range(ends.shape[0]):
+        r0, c0 = int(np.floor((starts[k, 1] - frame[1]) / frame[2])), int(np.floor((starts[k, 0] - frame[0]) / frame[2]))
         r1, c1 = int(np.floor((ends[k, 1] - frame[1]) / frame[2])), int(np.floor((ends[k, 0] - frame[0]) / frame[2]))
         down, across = abs(r1 - r0), abs(c1 - c0)
         step_r, step_c = (1 if r1 > r0 else -1), (1 if c1 > c0 else -1)
@@ -95,6 +95,8 @@ class BeamObservation:
     ends: Floats
     hits: Mask
     """(n,) whether the beam ended at something; else it is free up to its end and beyond nothing is known."""
+    starts: Floats | None = None
+    """(n, 2) m, from where on the beams see the ground; None: from the eye."""
 
 
 class ObstacleLayer:
@@ -141,10 +143,12 @@ class ObstacleLayer:
         away = seen.ends - np.array(seen.eye)
         distances, reach = np.hypot(away[:, 0], away[:, 1]), BEYOND * self.resolution * len(self.cells)
         whole, inside = np.isfinite(distances), distances <= reach
-        ends = np.array(seen.eye) + away[whole] * np.minimum(reach / np.maximum(distances[whole], reach), 1.0)[:, None]
+        eyes = np.tile(np.array(seen.eye), (len(away), 1))
+        ends = eyes[whole] + away[whole] * np.minimum(reach / np.maximum(distances[whole], reach), 1.0)[:, None]
+        starts = (eyes if seen.starts is None else seen.starts)[whole]
         frame = (*self.origin, self.resolution)
         mark_ends(self.cells, self._seen, self._hit, frame, seen.ends[whole & inside & seen.hits], (seen.age, self._count))
-        clear_beams(self.cells, self._freed, self._hit, frame, (seen.eye, ends), (self._ms(seen.t), self._count))
+        clear_beams(self.cells, self._freed, self._hit, frame, (starts, ends), (self._ms(seen.t), self._count))
 
     def mark(self, points: Floats, age: float) -> None:
         """Marks points (n, 2) [m] that no beam can see: where it was touched, or where nobody is to drive."""

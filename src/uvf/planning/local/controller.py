@@ -11,6 +11,7 @@ from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.planning.costmap.costmap import Costmap
 from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.costmap.hidden_obstacles import HiddenObstacles
 from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
 from uvf.planning.costmap.own_ground import WAY_OUT, leaving_factors, with_way_out
@@ -82,6 +83,7 @@ class LocalController:
         self.footprint = footprint
         self.planner = planner
         self.layer = ObstacleLayer(settings.size, settings.resolution, settings.obstacle_memory)
+        self.hidden = HiddenObstacles(settings.size, settings.resolution, settings.obstacle_memory)
         self.moving = MovingObjects()
         self._goal = GoalChecker(settings.goal)
         self._plan_footprint = footprint.padded(settings.margin)
@@ -112,6 +114,7 @@ class LocalController:
             self.layer.free_disc((mx, my), radius + BESIDE)
         near = points[(ranges > 0.0) & ~self._evaded(ends) & (np.abs(points) <= NEAR).all(axis=1)]
         self._near = np.concatenate((near, transform(inverse(pose), self.layer.lethal_near((pose[0], pose[1]), REMEMBERED))))
+        self.keep_out(self.hidden.points(self._odometer, (pose[0], pose[1]), self.settings.size / 2))
 
     def keep_out(self, points: Floats) -> None:
         """Points (n, 2) [m, the poses' frame] that are obstacles though no sensor sees them; told anew after each ``see``."""
@@ -142,6 +145,11 @@ class LocalController:
     def costmap(self, size: float | None = None) -> Costmap:
         """What is known round the vehicle, or its middle of ``size`` [m], for planning."""
         return self.layer.costmap(self._plan_footprint, self.settings.inflation, size)
+
+    @property
+    def age(self) -> float:
+        """What the lifetime of obstacles is measured by: m travelled."""
+        return self._odometer
 
     @property
     def factors(self) -> Floats:

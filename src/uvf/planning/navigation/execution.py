@@ -4,14 +4,17 @@ from math import hypot
 
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2
+from uvf.planning.costmap.bumps import Bump
 from uvf.planning.local.controller import Drive, LocalController
 from uvf.planning.local.planner import STOP
 from uvf.planning.navigation.directive import Action, Directive, Report
+from uvf.planning.navigation.retreat import Retreat
 
 SPIN_RATE = 1.2  # rad/s
 BACK_UP_SPEED = 0.15  # m/s
 MOST_BACKED = 5.0
 """Times the distance asked for that it backs up at most, to where it has room to turn."""
+ROLLING = 0.02  # m/s, rad/s
 BLOCKED_FOR = 1.0  # s of standing after which a recovery counts as impossible
 
 
@@ -24,11 +27,19 @@ class Executor:
         self._begun: Pose2 = Pose2(0.0, 0.0, 0.0)
         self._turned, self._yaw = 0.0, 0.0
         self._stood_since: float | None = None
+        self._retreat: Retreat | None = None
+
+    def draw_back(self, t: float, pose: Pose2, bump: Bump) -> None:
+        """Draws back from a touch at ``t`` [s], whatever it was doing, and goes on with that."""
+        if self._retreat is None:
+            self._retreat = Retreat(t, pose, bump)
 
     def step(self, t: float, pose: Pose2, velocity: tuple[float, float], directive: Directive) -> tuple[float, float]:
         """Velocity (m/s, rad/s) at ``t`` [s]; the stop before obstacles has the last word in all that is done."""
         if directive.number != self.report.number:
             self._begin(pose, directive)
+        if self._retreat is not None:
+            return self._draw_back_on(t, pose, velocity, directive, self._retreat)
         if directive.action == Action.FOLLOW:
             result = self.controller.drive(pose, velocity, directive.path, directive.heading)
             self.report = Report(directive.number, result.how)
@@ -38,12 +49,24 @@ class Executor:
             return self.controller.hold(pose, velocity)
         return self._move(t, pose, velocity, directive)
 
+    def _draw_back_on(
+        self, t: float, pose: Pose2, velocity: tuple[float, float], directive: Directive, retreat: Retreat
+    ) -> tuple[float, float]:
+        self.report = Report(directive.number)
+        if not retreat.is_over(t, pose):
+            rolls_on = any(w * v < 0.0 and abs(v) > ROLLING for w, v in zip(retreat.wanted(), velocity, strict=True))
+            return self.controller.halt() if rolls_on else self.controller.move(pose, velocity, retreat.wanted())
+        self._retreat = None
+        self.controller.hidden.bump(self.controller.age, retreat.bump)
+        return self.controller.halt()
+
     def _begin(self, pose: Pose2, directive: Directive) -> None:
         self.report = Report(directive.number)
         self._begun, self._turned, self._yaw, self._stood_since = pose, 0.0, pose[2], None
         self.controller.planner.reset()
         if directive.clear_beyond is not None:
             self.controller.layer.clear(directive.clear_beyond, (pose[0], pose[1]))
+            self.controller.hidden.clear(directive.clear_beyond, (pose[0], pose[1]))
 
     def _move(self, t: float, pose: Pose2, velocity: tuple[float, float], directive: Directive) -> tuple[float, float]:
         self._turned += wrap(pose[2] - self._yaw)

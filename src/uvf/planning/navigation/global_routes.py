@@ -6,6 +6,7 @@ from scipy import ndimage
 
 from uvf.maths.se2 import Pose2, transform
 from uvf.planning.costmap.costmap import Frame
+from uvf.planning.costmap.hidden_obstacles import HiddenObstacles
 from uvf.planning.costmap.inflation import FREE_SPACE, LETHAL
 from uvf.planning.costmap.obstacle_layer import ObstacleLayer
 from uvf.planning.costmap.zone_mask import KEPT_OUT, ZoneMask
@@ -27,9 +28,9 @@ class GlobalRoutes:
     that was drawn with something in the way does not shut it for ever.
     """
 
-    def __init__(self, planner: GlobalPlanner, layer: ObstacleLayer) -> None:
+    def __init__(self, planner: GlobalPlanner, layer: ObstacleLayer, hidden: HiddenObstacles) -> None:
         self.allow_unknown = False
-        self._planner, self._layer = planner, layer
+        self._planner, self._layer, self._hidden = planner, layer, hidden
         self._drawn: tuple[Cells, Frame] | None = None
         self._map: tuple[Cells, Frame] | None = None
         """The map as it was drawn, and with what is to be kept out of."""
@@ -57,9 +58,9 @@ class GlobalRoutes:
         if self._map is None:
             return False
         cells, frame = self._map
-        lethal = self._on_map(self._layer.cells == LETHAL, frame)
+        lethal = np.concatenate((self._cells(self._centres(LETHAL), frame), self._cells(self._hidden.touched, frame)))
         lethal = lethal[~self._walls[lethal[:, 0], lethal[:, 1]]]  # a wall of the map is where the map has it
-        free = self._on_map(self._layer.cells == FREE_SPACE, frame) if self._trusts_sight else lethal[:0]
+        free = self._cells(self._centres(FREE_SPACE), frame) if self._trusts_sight else lethal[:0]
         shown = lethal.tobytes() + free.tobytes()
         changed = shown != self._shown
         if changed:
@@ -99,11 +100,14 @@ class GlobalRoutes:
         out = (mask.at(transform(mask_from_map, centres)) >= KEPT_OUT).reshape(cells.shape)
         return np.where(out, np.int8(100), cells)
 
-    def _on_map(self, mask: NDArray[np.bool_], frame: Frame) -> NDArray[np.int64]:
-        """(n, 2) rows and columns of the map, which has a frame, on which the layer's cells of a mask lie."""
-        layer, (resolution, (x0, y0)) = self._layer, frame
-        at = np.argwhere(mask)
-        rows = np.floor(((at[:, 0] + 0.5) * layer.resolution + layer.origin[1] - y0) / resolution).astype(np.int64)
-        columns = np.floor(((at[:, 1] + 0.5) * layer.resolution + layer.origin[0] - x0) / resolution).astype(np.int64)
+    def _centres(self, value: int) -> Floats:
+        """(n, 2) m centres of the layer's cells of a value."""
+        out: Floats = (np.argwhere(self._layer.cells == value)[:, ::-1] + 0.5) * self._layer.resolution + np.array(self._layer.origin)
+        return out
+
+    def _cells(self, points: Floats, frame: Frame) -> NDArray[np.int64]:
+        """(n, 2) rows and columns of the map, which has a frame, in which points (k, 2) [m] lie; those off the map are left out."""
+        resolution, (x0, y0) = frame
+        rows, columns = np.floor((points[:, ::-1] - (y0, x0)) / resolution).astype(np.int64).T
         inside = (rows >= 0) & (columns >= 0) & (rows < self._walls.shape[0]) & (columns < self._walls.shape[1])
         return np.column_stack((rows[inside], columns[inside]))

@@ -30,6 +30,7 @@ class NavigationGoal:
     y: float
     yaw: float | None = None
     tolerance: float = 0.25  # m from it that counts as there
+    most_recoveries: int = 30  # in all
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,6 @@ class NavigatorSettings:
     yaw_goal_tolerance: float = 0.1  # rad
     replan_period: float = 1.0  # s
     recovered: float = 1.0  # m of the way by which it must have become shorter for recoveries to begin from the first again
-    largest_recoveries: int = 30  # in all for one goal
     circumscribed_radius: float = 0.3  # m, of the footprint
     progress: ProgressSettings = field(default_factory=ProgressSettings)
 
@@ -213,7 +213,7 @@ class Navigator:
         """Something is in the way: the next recovery against it, or none is left."""
         self._failure, self._reason = failure, reason
         attempts = recoveries(failure, self.settings.circumscribed_radius)
-        if self._tried >= len(attempts) or self._count >= self.settings.largest_recoveries:
+        if self._tried >= len(attempts) or (self._goal is not None and self._count >= self._goal.most_recoveries):
             self._end(t, Status.ABORTED, failure, reason)
             return
         attempt, self._tried = attempts[self._tried], self._tried + 1

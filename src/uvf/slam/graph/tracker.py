@@ -79,6 +79,8 @@ class Tracker:
         When the sweep fits badly after the step but well near the pose before it, the step is taken for wrong.
         """
         step, motion = motion.step, self.trust.straightened(motion)
+        if cloud.is_scant and motion.told:
+            return Tracked(Match(motion.guess, np.zeros((3, 3)), 0.0, self.rms), True)
         found = self._found(local, motion, cloud)
         if motion.disputed or (motion.told and self._doubts(found)):
             other = self._found(local, OdometryMotion(motion.before, IDENTITY, UNKNOWN), cloud)

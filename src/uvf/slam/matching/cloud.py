@@ -35,6 +35,8 @@ class Cloud:
     points: Floats
     normals: Floats
     weights: Floats
+    is_scant: bool = False
+    """Whether it is too little to go by, as ``Reading.is_scant``."""
 
     @property
     def flat(self) -> NDArray[np.bool_]:
@@ -120,7 +122,7 @@ def cloud_of(reading: Reading) -> Cloud:
     stride = max(1, -(-len(returned) // ENOUGH))
     kept = np.flatnonzero(returned[::stride]) * stride
     normals = _normals(points, returned, (beams.origin, window_of(beams.bearings)), kept)
-    return Cloud(points[kept], normals, np.where((normals != 0.0).any(axis=1), 1.0, UNSURE))
+    return Cloud(points[kept], normals, np.where((normals != 0.0).any(axis=1), 1.0, UNSURE), reading.is_scant)
 
 
 def window_of(bearings: Floats) -> int:

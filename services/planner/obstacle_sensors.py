@@ -1,0 +1,108 @@
+"""All that one vehicle sees and feels obstacles with: its lidar, and depth camera, sonars and bumpers for what the lidar does not see."""
+
+from collections import deque
+from math import atan2
+from typing import NamedTuple
+
+import numpy as np
+
+from schemas.messages import CameraCalibration, CompressedImage, Contact, Range
+from services.planner.scan_placing import PlacedScan, ScanPlacer
+from uvf.maths.rotations import from_euler, rotate
+from uvf.maths.se3 import Transform, apply, compose
+from uvf.models.vehicle.sensors import Mount, Sensors
+from uvf.models.yaml_data import BadInput
+from uvf.planning.costmap.bumps import Bump, BumpSense
+from uvf.planning.costmap.footprint import RobotFootprint
+from uvf.planning.costmap.hidden_obstacles import HiddenObstacles, unexplained
+from uvf.planning.costmap.range_sights import GroundSight, cone_sight, depth_sight
+from uvf.runtime.messages.convert import seconds
+from uvf.runtime.messages.depth_pictures import depth_rays
+from uvf.runtime.messages.sensor_frames import OPTICAL
+
+DEPTH_REACH = 3.0  # m, beyond which depths are too coarse to tell a step from the floor
+SONAR_REACH = 2.0  # m, beyond which a cone is too wide to say where
+PIXELS = 20_000  # of a depth picture that are looked at
+PATIENCE = 1.0  # s that what was seen waits until it is known from where
+WAITING_MOST = 32
+
+
+class OtherReadings(NamedTuple):
+    """What has come from sensors other than the lidar."""
+
+    depth: list[CompressedImage]
+    info: CameraCalibration | None
+    sonar: list[Range]
+    contact: list[Contact]
+
+
+class ObstacleSensors:
+    """One vehicle's; poses, in one frame, come to its ``placer``."""
+
+    def __init__(self, placer: ScanPlacer, footprint: RobotFootprint, sensors: Sensors, top: float) -> None:
+        """top: height [m] of the vehicle, below which things are in its way."""
+        self.placer = placer
+        self.faults: list[str] = []
+        """What was sent and could not be read, since the last step."""
+        self.bump: Bump | None = None
+        """What it has been touched by since the last step."""
+        self._top = top
+        camera = sensors.camera
+        self._base_from_optical = None if camera is None else compose(_transform(camera.mount), _transform(OPTICAL))
+        self._sonars = {sonar.frame: sonar for sonar in sensors.sonars}
+        self._bumper = BumpSense(footprint, {b.name: (b.angle_min, b.angle_max) for b in sensors.bumpers})
+        self._scan: PlacedScan | None = None
+        self._waiting: deque[tuple[float, str, GroundSight]] = deque(maxlen=WAITING_MOST)
+
+    def see(self, scan: PlacedScan) -> None:
+        """What the lidar has seen explains what a sonar hears."""
+        self._scan = scan
+
+    def take(self, age: float, readings: OtherReadings, hidden: HiddenObstacles) -> None:
+        """Puts what has been seen among the hidden obstacles, whose lifetime goes by ``age``."""
+        self.faults, self.bump = [], None
+        if readings.info is not None and self._base_from_optical is not None:
+            for picture in readings.depth:
+                self._look(picture, readings.info, self._base_from_optical)
+        for reading in readings.sonar:
+            self._hear(reading)
+        for contact in readings.contact:
+            if not contact.touching:
+                self._bumper.feel_nothing(seconds(contact.timestamp))
+            elif (at := self.placer.newest) is not None:
+                bump = self._bumper.feel(seconds(contact.timestamp), at, self.placer.motion, list(contact.sectors))
+                self.bump = self.bump or bump
+        waiting, self._waiting = self._waiting, deque(maxlen=WAITING_MOST)
+        for t, sensor, sight in waiting:
+            if (pose := self.placer.at(t)) is not None:
+                hidden.see(sensor, (t, age), pose, sight)
+            elif t > self.placer.newest_at - PATIENCE:
+                self._waiting.append((t, sensor, sight))
+
+    def _look(self, picture: CompressedImage, info: CameraCalibration, base_from_optical: Transform) -> None:
+        try:
+            rays, depths = depth_rays(picture, info)
+        except BadInput as error:
+            self.faults.append(str(error))
+            return
+        step = int(np.ceil(np.sqrt(len(depths) / PIXELS)))
+        rows = np.arange(info.height)[::step, None] * info.width + np.arange(info.width)[::step]
+        rays, depths = rays[rows.ravel()], depths[rows.ravel()]
+        near = (depths > 0.0) & (depths <= DEPTH_REACH)
+        x, y, _ = base_from_optical.translation.tolist()
+        sight = depth_sight((x, y), apply(base_from_optical, rays[near] * depths[near, None]), self._top)
+        self._waiting.append((seconds(picture.timestamp), "depth camera", sight))
+
+    def _hear(self, reading: Range) -> None:
+        sonar = self._sonars.get(reading.frame_id.rpartition("/")[2])
+        if sonar is None or not np.isfinite(reading.range):
+            return
+        (x, y, _), (ahead, left, _) = sonar.mount.xyz, rotate(from_euler(*sonar.mount.rpy), np.eye(3)[0]).tolist()
+        sight = cone_sight((x, y), atan2(left, ahead), sonar.fov, (reading.range, min(sonar.range_max, SONAR_REACH)))
+        if self._scan is not None:
+            sight = unexplained(sight, self._scan.points[self._scan.ranges > 0.0])
+        self._waiting.append((seconds(reading.timestamp), sonar.frame, sight))
+
+
+def _transform(mount: Mount) -> Transform:
+    return Transform(from_euler(*mount.rpy), np.array(mount.xyz))
