@@ -87,44 +87,61 @@ def test_one_sensor_does_not_clear_what_another_has_marked():
     assert len(hidden.points(1.0, (0.0, 0.0), 4.0)) == before > 0
 
 
+def held_up(motion, sense=None, speeds=(1.0, 0.9, 0.5, 0.2, 0.0, 0.0)):
+    """What comes of a touch that lasts while the motion falls to the shares ``speeds`` of what it was, in tenths of a second."""
+    sense = sense or BumpSense(BOX, {})
+    told = [sense.feel(0.1 * k, HERE, (share * motion[0], share * motion[1]), []) for k, share in enumerate(speeds)]
+    assert [bump for bump in told if bump is not None] == [bump for bump in told[4:5] if bump is not None]
+    return told[4] if len(told) > 4 else None
+
+
 @pytest.mark.parametrize(
     ("motion", "bearing"), [((0.4, 0.0), 0.0), ((-0.2, 0.0), np.pi), ((0.4, 0.1), 0.0)], ids=["forwards", "backwards", "in a curve"]
 )
 def test_without_bumpers_the_side_that_led_was_touched(motion, bearing):
-    bump = BumpSense(BOX, {}).feel(1.0, HERE, motion, [])
+    bump = held_up(motion)
     middle = bump.points.mean(axis=0)
     assert abs(np.angle(np.exp(1j * (np.arctan2(middle[1], middle[0]) - bearing)))) < 0.3
     assert (np.abs(bump.points[:, 0]) > 0.2).all()
+    assert bump.motion == motion
 
 
 def test_turning_on_the_spot_the_corners_led():
-    bump = BumpSense(BOX, {}).feel(1.0, HERE, (0.0, 1.0), [])
-    x, y = bump.points.T
+    x, y = held_up((0.0, 1.0)).points.T
     assert (x * y > 0.0).any()
     assert (np.hypot(x, y) > 0.19).all()
 
 
-def test_a_bumper_tells_where():
+def test_what_is_driven_over_is_no_obstacle():
+    assert held_up((0.4, 0.0), speeds=(1.0, 0.8, 0.6, 0.6, 0.7, 0.8)) is None
+    sense = BumpSense(BOX, {})
+    assert held_up((0.4, 0.0), sense, speeds=(1.0, 0.6)) is None
+    for k in range(6):
+        sense.feel_nothing(0.2 + 0.1 * k)
+    assert held_up((0.1, 0.0), sense, speeds=(1.0, 1.0, 1.0)) is None
+
+
+def test_who_stands_has_not_touched_anything_by_itself():
+    assert held_up((0.0, 0.0)) is None
+    assert BumpSense(BOX, {}).feel(1.0, HERE, (0.0, 0.0), ["unheard of"]) is None
+
+
+def test_a_bumper_tells_where_and_at_once():
     sense = BumpSense(BOX, {"rear": (2.3, 3.9), "left": (1.2, 1.9)})
     assert (sense.feel(1.0, HERE, (0.3, 0.0), ["rear"]).points[:, 0] < 0.0).all()
     assert (BumpSense(BOX, {"left": (1.2, 1.9)}).feel(1.0, HERE, (0.0, 0.0), ["left"]).points[:, 1] > 0.0).all()
 
 
-def test_who_stands_has_not_touched_anything_by_itself():
-    assert BumpSense(BOX, {}).feel(1.0, HERE, (0.0, 0.0), []) is None
-    assert BumpSense(BOX, {}).feel(1.0, HERE, (0.0, 0.0), ["unheard of"]) is None
-
-
 def test_one_touch_is_told_of_once():
-    sense = BumpSense(BOX, {})
-    assert sense.feel(1.0, HERE, (0.3, 0.0), []) is not None
+    sense, front = BumpSense(BOX, {"front": (-0.8, 0.8)}), ["front"]
+    assert sense.feel(1.0, HERE, (0.3, 0.0), front) is not None
     off = Pose2(-0.1, 0.0, 0.0)
-    assert sense.feel(1.1, off, (-0.2, 0.0), []) is None
+    assert sense.feel(1.1, off, (-0.2, 0.0), front) is None
     sense.feel_nothing(1.2)
-    assert sense.feel(1.2 + FREE / 2, off, (-0.2, 0.0), []) is None
+    assert sense.feel(1.2 + FREE / 2, off, (-0.2, 0.0), front) is None
     sense.feel_nothing(2.0)
     sense.feel_nothing(3.0)
-    assert sense.feel(3.1, off, (-0.2, 0.0), []) is not None
+    assert sense.feel(3.1, off, (-0.2, 0.0), front) is not None
 
 
 def test_a_touch_is_remembered_longer_than_what_is_seen_and_is_not_for_ever():

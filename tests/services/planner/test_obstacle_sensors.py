@@ -96,13 +96,13 @@ def test_pushed_from_behind_as_it_stands_it_moves_off_forwards():
 
 
 def test_the_planner_goes_round_what_was_touched_even_when_it_is_far_away_again():
-    bench = Bench()
+    bench = Bench(sensors=FITTED)
     bench.step(goal=[asked(3.5, 1.0)])
     straight = bench.said["path"]
     for x in (1.2, 1.4, 1.6, 1.8, 2.0):
         bench.here = (x, 1.0)
         bench.step()
-    bench.step(contact=[contact(bench.t + 0.2)])
+    bench.step(contact=[contact(bench.t + 0.2, "front")])
     bench.here = (1.0, 1.0)
     bench.step(6)
     touched_x = world(2.1, 1.0)[1]
