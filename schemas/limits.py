@@ -46,6 +46,7 @@ LENGTHS: dict[str, int] = {
     "foxglove.PoseInFrame.frame_id": 100,
     "foxglove.FrameTransform.parent_frame_id": 100,
     "foxglove.FrameTransform.child_frame_id": 100,
+    "uvf.v1.RouteRequest.places": 200,
     "uvf.v1.Fence.zones": 32,
     "uvf.v1.FenceZone.vertices": 128,
     "uvf.v1.Param.description": 4000,
@@ -63,6 +64,7 @@ RANGES: dict[str, tuple[int, int]] = {
     "uvf.v1.MissionProgress.total": (0, ENTRIES),
     "uvf.v1.MissionProgress.reached": (-1, ENTRIES),
     "uvf.v1.VehicleStatus.waypoint": (0, ENTRIES),
+    "uvf.v1.NavStatus.route_at": (0, 200),
     "uvf.v1.VehicleStatus.system_id": (0, 255),
     "uvf.v1.Gnss.satellites": (0, 255),
 }
@@ -72,6 +74,7 @@ MOST: dict[str, float] = {
     "uvf.v1.MissionItem.position": PLACE,
     "uvf.v1.GoalRequest.position": PLACE,
     "uvf.v1.PreviewRequest.position": PLACE,
+    "uvf.v1.RouteRequest.places": PLACE,
     "uvf.v1.OrbitRequest.centre": PLACE,
     "uvf.v1.HomeCommand.position": PLACE,
     "uvf.v1.LineSetpoint.origin": PLACE,

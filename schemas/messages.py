@@ -38,6 +38,7 @@ from schemas.v1.link_pb2 import Link
 from schemas.v1.map_pb2 import MapFix, MapReply, MapRequest, MapSession, PlaceRequest, RelocalizeRequest, SaveMapRequest
 from schemas.v1.mission_pb2 import (
     CancelRequest,
+    FollowRequest,
     GoalRequest,
     GoAroundRequest,
     Mission,
@@ -46,6 +47,7 @@ from schemas.v1.mission_pb2 import (
     MissionRequest,
     NavStatus,
     OrbitRequest,
+    RouteRequest,
     SetCurrentRequest,
 )
 from schemas.v1.navigation_pb2 import NavDirective, NavReport, PreviewReply, PreviewRequest
@@ -108,7 +110,9 @@ __all__ = [
     "Gnss",
     "FlightSetpoint",
     "GoAroundRequest",
+    "FollowRequest",
     "GoalRequest",
+    "RouteRequest",
     "HomeCommand",
     "OrbitRequest",
     "Grid",

@@ -210,6 +210,8 @@ GO_AROUND = Request(f"{_V}/srv/go_around", m.GoAroundRequest, m.Reply, "give up 
 VEHICLE_COMMAND = Request(
     f"{_V}/srv/vehicle_command", m.VehicleCommandRequest, m.Reply, "take off to a height; speed, altitude, home, camera; begin anew"
 )
+ROUTE = Request(f"{_V}/srv/route", m.RouteRequest, m.Reply, "go to several places: stop at each, pass through, or patrol")
+FOLLOW = Request(f"{_V}/srv/follow", m.FollowRequest, m.Reply, "stay behind another vehicle")
 PREVIEW = Request(f"{_V}/srv/preview", m.PreviewRequest, m.PreviewReply, "is there a way to a place, and what is it like?")
 CANCEL = Request(f"{_V}/srv/cancel", m.CancelRequest, m.Reply, "give up the goal that is being driven to")
 SET_MISSION = Request(f"{_V}/srv/mission", m.MissionRequest, m.Reply, "replace the mission")

@@ -132,6 +132,36 @@ class GoalRequest(_message.Message):
     speed: float
     def __init__(self, position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., yaw: _Optional[float] = ..., source: _Optional[str] = ..., radius: _Optional[float] = ..., speed: _Optional[float] = ...) -> None: ...
 
+class RouteRequest(_message.Message):
+    __slots__ = ("places", "kind", "yaw", "source")
+    class Kind(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+        __slots__ = ()
+        WAYPOINTS: _ClassVar[RouteRequest.Kind]
+        THROUGH: _ClassVar[RouteRequest.Kind]
+        PATROL: _ClassVar[RouteRequest.Kind]
+    WAYPOINTS: RouteRequest.Kind
+    THROUGH: RouteRequest.Kind
+    PATROL: RouteRequest.Kind
+    PLACES_FIELD_NUMBER: _ClassVar[int]
+    KIND_FIELD_NUMBER: _ClassVar[int]
+    YAW_FIELD_NUMBER: _ClassVar[int]
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    places: _containers.RepeatedCompositeFieldContainer[_Vector3_pb2.Vector3]
+    kind: RouteRequest.Kind
+    yaw: float
+    source: str
+    def __init__(self, places: _Optional[_Iterable[_Union[_Vector3_pb2.Vector3, _Mapping]]] = ..., kind: _Optional[_Union[RouteRequest.Kind, str]] = ..., yaw: _Optional[float] = ..., source: _Optional[str] = ...) -> None: ...
+
+class FollowRequest(_message.Message):
+    __slots__ = ("vehicle", "distance", "source")
+    VEHICLE_FIELD_NUMBER: _ClassVar[int]
+    DISTANCE_FIELD_NUMBER: _ClassVar[int]
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    vehicle: str
+    distance: float
+    source: str
+    def __init__(self, vehicle: _Optional[str] = ..., distance: _Optional[float] = ..., source: _Optional[str] = ...) -> None: ...
+
 class OrbitRequest(_message.Message):
     __slots__ = ("centre", "radius", "speed", "source")
     CENTRE_FIELD_NUMBER: _ClassVar[int]
@@ -157,7 +187,7 @@ class CancelRequest(_message.Message):
     def __init__(self, source: _Optional[str] = ...) -> None: ...
 
 class NavStatus(_message.Message):
-    __slots__ = ("timestamp", "state", "job", "goal", "distance_left", "reason", "explored", "time_left", "recoveries")
+    __slots__ = ("timestamp", "state", "job", "goal", "distance_left", "reason", "explored", "time_left", "recoveries", "route", "route_at", "follow")
     class State(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
         IDLE: _ClassVar[NavStatus.State]
@@ -183,6 +213,9 @@ class NavStatus(_message.Message):
     EXPLORED_FIELD_NUMBER: _ClassVar[int]
     TIME_LEFT_FIELD_NUMBER: _ClassVar[int]
     RECOVERIES_FIELD_NUMBER: _ClassVar[int]
+    ROUTE_FIELD_NUMBER: _ClassVar[int]
+    ROUTE_AT_FIELD_NUMBER: _ClassVar[int]
+    FOLLOW_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     state: NavStatus.State
     job: str
@@ -192,4 +225,7 @@ class NavStatus(_message.Message):
     explored: float
     time_left: float
     recoveries: int
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., state: _Optional[_Union[NavStatus.State, str]] = ..., job: _Optional[str] = ..., goal: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., distance_left: _Optional[float] = ..., reason: _Optional[str] = ..., explored: _Optional[float] = ..., time_left: _Optional[float] = ..., recoveries: _Optional[int] = ...) -> None: ...
+    route: RouteRequest
+    route_at: int
+    follow: FollowRequest
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., state: _Optional[_Union[NavStatus.State, str]] = ..., job: _Optional[str] = ..., goal: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., distance_left: _Optional[float] = ..., reason: _Optional[str] = ..., explored: _Optional[float] = ..., time_left: _Optional[float] = ..., recoveries: _Optional[int] = ..., route: _Optional[_Union[RouteRequest, _Mapping]] = ..., route_at: _Optional[int] = ..., follow: _Optional[_Union[FollowRequest, _Mapping]] = ...) -> None: ...

@@ -51,7 +51,8 @@ def _hosts(member: MissionVehicle) -> list[ServiceInstance]:
         return ObstacleSensors(placer, footprint, member.file.sensors, top)
 
     def planner_service() -> PlannerService:
-        return PlannerService(world_from_map, PlannedVehicle(footprint, sensors_of(), speed, member.entry.job.explore), planner)
+        vehicle = PlannedVehicle(footprint, sensors_of(), speed, member.entry.job.explore, member.name)
+        return PlannerService(world_from_map, vehicle, planner)
 
     def tracker_service() -> TrackerService:
         return TrackerService(body, footprint, sensors_of(), tracker)

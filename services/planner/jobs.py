@@ -1,7 +1,7 @@
-"""What a ground vehicle is to do now: return, a person's goal, the mission, exploring, in this order."""
+"""What a ground vehicle is to do now: return, a person's errand, the mission, exploring, in this order."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from schemas.messages import Mission, MissionItem, MissionProgress, Mode, RallyPoints, VehicleStatus
 from uvf.runtime.messages.convert import mode_name
@@ -18,12 +18,49 @@ class Goal:
 
 
 @dataclass(frozen=True)
+class Errand:
+    """What a person has asked for: places to drive to in turn."""
+
+    name: str
+    """As in ``NavStatus.job``."""
+    goals: tuple[Goal, ...]
+    via: tuple[Point, ...] = ()
+    """Places [m, world] to pass before the first one."""
+    at: int = 0
+    """Index of the place that is driven to now."""
+    missed: int = 0
+    """Places in a row that could not be reached."""
+    repeats: bool = False
+    """Whether it begins again after the last place."""
+    leader: str = ""
+    """The vehicle that is followed, if one is."""
+
+    @property
+    def goal(self) -> Goal:
+        """The place that is driven to now."""
+        return self.goals[self.at]
+
+    def after(self, reached: bool) -> "Errand | None":
+        """What is left when the place is reached, or given up; None when that was all, or no place at all can be reached."""
+        missed = 0 if reached else self.missed + 1
+        if missed >= len(self.goals) or (self.at + 1 == len(self.goals) and not self.repeats):
+            return None
+        return replace(self, at=(self.at + 1) % len(self.goals), missed=missed, via=())
+
+
+@dataclass(frozen=True)
 class Job:
     """The vehicle's job. name: as in ``NavStatus.job``; target: position to reach [m, world], None: it finds its own, or there is none."""
 
     name: str
     target: Point | None = None
     yaw: float | None = None
+    via: tuple[Point, ...] = ()
+    """Places [m, world] to pass on the way."""
+    is_errand: bool = False
+    """Whether a person has asked for it."""
+    leader: str = ""
+    """The vehicle that is followed, if one is."""
 
     @property
     def allow_unknown(self) -> bool:
@@ -67,12 +104,12 @@ class ReturnPoints:
         return self._chosen
 
 
-def choose(status: VehicleStatus | None, goal: Goal | None, target: Point | None, orders: Orders) -> Job:
-    """The job that follows from status, goal and mission; target: position (x, y) [m, world] of the current item, if any."""
+def choose(status: VehicleStatus | None, errand: Errand | None, target: Point | None, orders: Orders) -> Job:
+    """The job that follows from status, errand and mission; target: position (x, y) [m, world] of the current item, if any."""
     if status is not None and status.mode == Mode.MODE_RETURN:
         return Job("return", orders.return_point)
-    if goal is not None:
-        return Job("goal", goal.point, goal.yaw)
+    if errand is not None:
+        return Job(errand.name, errand.goal.point, errand.goal.yaw, errand.via, is_errand=True, leader=errand.leader)
     if target is not None:
         return Job("mission", target)
     return EXPLORE if orders.explores else IDLE

@@ -1,10 +1,10 @@
 """Parameters of the planner."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from uvf.models.keys import key
+from uvf.models.keys import key, plain
 from uvf.models.params import Params
 
 Positive = Annotated[float, Meta(gt=0)]
@@ -13,6 +13,24 @@ Positive = Annotated[float, Meta(gt=0)]
 class PlannerParams(Params, frozen=True):
     """Parameters of the planner."""
 
+    global_planner: Annotated[
+        Literal[
+            "astar",
+            "dijkstra",
+            "jump_points",
+            "theta_star",
+            "rrt",
+            "rrt_star",
+            "rrt_connect",
+            "prm",
+            "visibility_graph",
+            "voronoi",
+            "potential_field",
+            "bug1",
+            "bug2",
+        ],
+        plain("What plans the path on the map."),
+    ] = "astar"
     margin: Annotated[Positive, key("m", "Distance kept from obstacles beyond the vehicle's outline.")] = 0.03
     inflation_radius: Annotated[Positive, key("m", "Distance from obstacles beyond which a path costs no more.")] = 0.55
     cost_scaling_factor: Annotated[Positive, key("1/m", "Rate at which the cost decays with the distance from an obstacle.")] = 6.0

@@ -14,3 +14,4 @@ class PlannedVehicle:
     sensors: ObstacleSensors
     speed: float
     explores: bool
+    name: str

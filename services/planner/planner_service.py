@@ -1,41 +1,27 @@
 """Map, pose and job -> what the tracker is to do, four times a second: a path to follow, or a recovery."""
 
-from math import hypot, inf, isfinite, isinf, isnan
+from math import hypot, inf, isfinite, isinf
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas import topics
 from schemas.messages import (
-    CameraCalibration,
     CancelRequest,
-    CompressedImage,
-    Contact,
     Event,
-    Fence,
-    GoalRequest,
-    Grid,
-    LaserScan,
-    Mission,
-    MissionProgress,
     Mode,
     ModeRequest,
     NavDirective,
-    NavReport,
     NavStatus,
     PoseInFrame,
     PosesInFrame,
-    PreviewReply,
-    PreviewRequest,
-    RallyPoints,
-    Range,
     Reply,
-    VehicleStatus,
 )
+from services.planner import interface
 from services.planner.directives import directive_message, path_message, report_of
+from services.planner.errands import ErrandBook
 from services.planner.exploration_goals import ExplorationGoals
 from services.planner.goal_desk import GoalDesk
-from services.planner.jobs import IDLE, Goal, Job, Orders, ReturnPoints, choose, home_of, mission_target, not_now
+from services.planner.jobs import IDLE, Job, Orders, ReturnPoints, choose, home_of, mission_target
 from services.planner.obstacle_sensors import OtherReadings
 from services.planner.params import PlannerParams
 from services.planner.planned_vehicle import PlannedVehicle
@@ -47,8 +33,7 @@ from uvf.planning.frontiers import FrontierWeights
 from uvf.planning.global_planner import NO_PLACE, GlobalPlanner, PlannedBody
 from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings, Status
 from uvf.planning.navigation.progress import ProgressSettings
-from uvf.runtime.contract.declaration import Reads, Writes, answers, call, every, optional, replies, request, topic
-from uvf.runtime.contract.service import Answer, Service
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
 
 Floats = NDArray[np.float64]
@@ -56,6 +41,7 @@ Point = tuple[float, float]
 
 FRONTIER_VIEW = 0.4  # m from a frontier, from where it is seen well enough
 EXPLORING_RECOVERIES = 2  # before another goal is chosen: there are more of them
+MOVED = 0.2  # m of the place behind who is followed, from which on the way there is planned anew
 AGAIN = 10.0  # s after which a place of the mission, or home, is tried again where nobody has changed the mode
 PUSHED = 3.0  # times the tolerance from a place that was reached, from where it is driven to again
 STATES = {
@@ -75,45 +61,9 @@ class PlannerService(Service):
     hz = 4.0
     given_up = "the vehicle stands where it would drive by itself"
 
-    class Inputs(Reads):
-        """Poses, map, all that sees or feels obstacles, the tracker's report, mission, and requests for goals."""
-
-        pose: list[PoseInFrame] = every(topics.POSE)
-        map: Grid = topic(topics.MAP)
-        scan: LaserScan | None = optional(topics.SCAN)
-        depth: list[CompressedImage] = optional(every(topics.DEPTH))
-        info: CameraCalibration | None = optional(topics.CAMERA_INFO)
-        sonar: list[Range] = optional(every(topics.SONAR))
-        contact: list[Contact] = optional(every(topics.CONTACT))
-        report: NavReport | None = optional(topics.NAV_REPORT)
-        keep_out: Grid | None = optional(topics.KEEP_OUT)
-        status: VehicleStatus | None = optional(topics.STATUS)
-        mission: Mission | None = optional(topics.MISSION)
-        progress: MissionProgress | None = optional(topics.PROGRESS)
-        bounds: Fence | None = optional(topics.FENCE)
-        rally: RallyPoints | None = optional(topics.RALLY)
-        goal: list[GoalRequest] = request(topics.GOAL)
-        cancel: list[CancelRequest] = request(topics.CANCEL)
-        preview: list[PreviewRequest] = request(topics.PREVIEW)
-        set_mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
-
-    class Outputs(Writes):
-        """Directive and path, status, and replies."""
-
-        directive: NavDirective | None = topic(topics.NAV_DIRECTIVE)
-        path: PosesInFrame | None = topic(topics.PATH)
-        nav_status: NavStatus | None = topic(topics.NAV_STATUS)
-        events: list[Event] | None = topic(topics.EVENTS.by("planner"))
-        goal: list[Reply] = replies(topics.GOAL)
-        cancel: list[Reply] = replies(topics.CANCEL)
-        preview: list[PreviewReply] = replies(topics.PREVIEW)
-        set_mode: list[ModeRequest] = call(topics.SET_MODE)
-
-    class Recalls(Reads):
-        """Latched status from which a restarted instance resumes."""
-
-        nav_status: NavStatus | None = topic(topics.NAV_STATUS)
-
+    Inputs = interface.Inputs
+    Outputs = interface.Outputs
+    Recalls = interface.Recalls
     params: PlannerParams
 
     def __init__(self, world_from_map: Pose2, vehicle: PlannedVehicle, params: PlannerParams) -> None:
@@ -126,7 +76,6 @@ class PlannerService(Service):
         self._exploration = ExplorationGoals(self._planner, self._taste)
         self._return_points = ReturnPoints()
         self._job: Job = IDLE
-        self._goal: Goal | None = None
         self._target: Point | None = None
         self._reason = ""
         """Why there is nowhere to go."""
@@ -139,8 +88,9 @@ class PlannerService(Service):
         self._asks: list[ModeRequest] = []
         self._events: list[Event] = []
         self._desk = GoalDesk(self._planner, world_from_map, vehicle.speed)
+        self._book = ErrandBook(self._desk)
 
-    def step(self, t: float, now: Inputs) -> Outputs:
+    def step(self, t: float, now: interface.Inputs) -> interface.Outputs:
         """One cycle at ``t`` [s, simulation]: chooses the job and its place, plans, watches the progress, and recovers."""
         self._ground.move(now.pose)
         here, self._desk.bounds = self._ground.here, now.bounds
@@ -149,12 +99,18 @@ class PlannerService(Service):
         self._fit()
         self._ground.keep_out(now.keep_out)
         changed = self._ground.look(t, now.map, now.scan, OtherReadings(now.depth, now.info, now.sonar, now.contact))
-        goal_replies = self._ask_all(t, here, now.goal, now.status)
+        self._book.team = {name: places for name, places in _places(now.team).items() if name != self._vehicle.name}
+        goal_replies, goal = self._book.take_goals(here, now.goal, now.status)
+        route_replies, route = self._book.take_routes(here, now.route, now.status)
+        follow_replies, follow = self._book.take_follows(now.follow, now.status)
+        self._tell_taken(t, follow, [request.source for request in now.follow])
+        self._tell_taken(t, goal, [request.source for request in now.goal])
+        self._tell_taken(t, route, [request.source for request in now.route])
         place = compose(self._world_from_map, here)[:2]
         home = home_of(now.status) or self._world_from_map[:2]
         return_point = self._return_points.step(now.status, place, home, now.rally)
         target = mission_target(now.mission, now.progress, home)
-        job = choose(now.status, self._goal, target, Orders(return_point, self._vehicle.explores))
+        job = choose(now.status, self._book.errand, target, Orders(return_point, self._vehicle.explores))
         if job != self._job:
             self._begin(t, job)
         cancel_replies = [self._cancel(t, request) for request in now.cancel]
@@ -174,20 +130,18 @@ class PlannerService(Service):
             events=events,
             set_mode=asks,
             goal=goal_replies,
+            route=route_replies,
+            follow=follow_replies,
             cancel=cancel_replies,
             preview=self._desk.previews(here, now.preview),
         )
 
-    def recall(self, left: Recalls) -> None:
-        """Resumes a person's goal that was being driven to; its heading is not known any more."""
-        if (
-            left.nav_status is not None
-            and left.nav_status.job == "goal"
-            and left.nav_status.state not in (NavStatus.REACHED, NavStatus.CANCELLED)
-        ):
-            self._goal = Goal((left.nav_status.goal.x, left.nav_status.goal.y))
+    def recall(self, left: interface.Recalls) -> None:
+        """Resumes a person's errand."""
+        if left.nav_status is not None:
+            self._book.resume(left.nav_status)
 
-    def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
+    def stale(self, t: float, missing: tuple[str, ...]) -> interface.Outputs:
         """Outputs at ``t`` [s, simulation] without a fresh pose or a map: the tracker is to stop."""
         reason = f"waiting for {', '.join(missing)}"
         return self.Outputs(
@@ -201,7 +155,7 @@ class PlannerService(Service):
         params = self.params
         inflation = Inflation(params.inflation_radius, params.cost_scaling_factor)
         offset = self._vehicle.sensors.placer.offset
-        return PlannedBody(self._footprint.padded(params.margin), inflation, params.cost_travel_multiplier, offset)
+        return PlannedBody(self._footprint.padded(params.margin), inflation, params.cost_travel_multiplier, offset, params.global_planner)
 
     @property
     def _taste(self) -> FrontierWeights:
@@ -220,33 +174,31 @@ class PlannerService(Service):
         if self._planner.fit(self._body):
             self._navigator.replan()
 
-    def _ask_all(self, t: float, here: Pose2, requests: list[GoalRequest], status: VehicleStatus | None) -> list[Reply]:
-        """Of several goals in one step the last that can be driven to counts; only that one is told of."""
-        replies = [self._ask(here, request, status) for request in requests]
-        taken = [request for request, reply in zip(requests, replies, strict=True) if reply.accepted]
-        if taken:
-            last = taken[-1]
-            self._goal = Goal((last.position.x, last.position.y), None if isnan(last.yaw) else last.yaw)
-            self._job = IDLE  # asked for anew, the same place is a goal anew
-            self._tell(t, f"goal ({last.position.x:.1f}, {last.position.y:.1f})", f"asked by {last.source or 'unknown'}")
-        return replies
+    def _tell_taken(self, t: float, what: str, sources: list[str]) -> None:
+        """A new errand; asked for anew, the same one is begun anew."""
+        if what:
+            self._job = IDLE
+            self._tell(t, what, f"asked by {sources[-1] or 'unknown'}")
 
-    def _ask(self, here: Pose2, wanted: GoalRequest, status: VehicleStatus | None) -> Reply:
-        reason = not_now(status) or self._desk.refusal(here, wanted.position)
-        if isinf(wanted.yaw):
-            reason = "the heading is infinite; give it in rad, or NaN for any"
-        return Reply(accepted=not reason, reason=reason)
+    def _go_on(self) -> None:
+        """A person's goal was reached, or cancelled, a while ago."""
+        if self._ending == NavStatus.REACHED:
+            self._book.go_on(reached=True)
+        else:
+            self._book.drop()
+        if self._book.errand is not None:
+            self._job = IDLE
 
     def _cancel(self, t: float, request: CancelRequest) -> Reply:
         """The vehicle stops; it stays as long as at a goal that was reached before its job goes on."""
-        if self._goal is None or self._ended_at is not None:
+        if self._book.errand is None or (self._ended_at is not None and self._book.errand.after(reached=True) is None):
             return Reply(accepted=False, reason="there is no goal to cancel")
         cause = f"asked by {request.source or 'unknown'}"
         self._tell(t, "goal cancelled", cause)
-        if self._job.name == "goal":
+        if self._job.is_errand:
             self._end(t, NavStatus.CANCELLED, f"goal cancelled, {cause}")
         else:
-            self._goal = None
+            self._book.drop()
         return Reply(accepted=True)
 
     def _end(self, t: float, ending: NavStatus.State, reason: str) -> None:
@@ -265,10 +217,12 @@ class PlannerService(Service):
         """Where the job leads now."""
         if self._ended_at is not None:
             if t - self._ended_at >= self.params.wait_at_goal:
-                self._goal = None
+                self._go_on()
         elif self._job == IDLE:
             self._navigator.cancel(t)
             self._reason = "no job"
+        elif self._job.leader:
+            self._aim_following(t, here)
         elif self._job.target is None:
             if changed or self._target is None or not self._navigator.is_busy:
                 self._aim_exploring(t, here)
@@ -285,13 +239,33 @@ class PlannerService(Service):
         self._ground.routes.allow_unknown = self._job.allow_unknown
         yaw = None if self._job.yaw is None else wrap(self._job.yaw - self._world_from_map[2])
         most = EXPLORING_RECOVERIES if self._job.name == "explore" else NavigationGoal.most_recoveries
-        self._navigator.start(t, NavigationGoal(*target, yaw, tolerance, most))
+        via = tuple(self._desk.in_map(point) for point in self._job.via)
+        self._navigator.start(t, NavigationGoal(*target, yaw, tolerance, most, via))
 
     def _is_pushed_away(self, here: Pose2) -> bool:
         """Whether the vehicle was where it should be, and is no longer."""
         if self._target is None or self._navigator.feedback.status != Status.REACHED:
             return False
         return hypot(here[0] - self._target[0], here[1] - self._target[1]) > PUSHED * self.params.goal_tolerance
+
+    def _aim_following(self, t: float, here: Pose2) -> None:
+        """The place on the track of who is followed; near enough, or without hearing of them, the vehicle stands."""
+        leader, trail = self._job.leader, self._book.trail
+        place = self._book.team.get(leader)
+        if place is not None:
+            trail.add(place)
+        target = None if place is None else trail.target(compose(self._world_from_map, here)[:2])
+        if target is None:
+            self._navigator.cancel(t)
+            self._target, self._reason = None, f"nothing is heard of {leader}" if place is None else f"near enough to {leader}"
+            return
+        in_map, busy = self._desk.in_map(target), self._navigator.is_busy
+        if busy and self._target is not None:
+            if hypot(in_map[0] - self._target[0], in_map[1] - self._target[1]) > MOVED:
+                self._target = in_map
+                self._navigator.lead_on(t, NavigationGoal(*in_map, None, self.params.goal_tolerance))
+        elif self._navigator.feedback.status != Status.ABORTED or self._target is None:
+            self._go(t, in_map, self.params.goal_tolerance)
 
     def _aim_exploring(self, t: float, here: Pose2) -> None:
         was_shut_in = self._exploration.is_shut_in
@@ -309,7 +283,7 @@ class PlannerService(Service):
         if self._target is None or self._ended_at is not None:
             return
         told = self._navigator.feedback
-        if told.status == Status.REACHED and self._job.name == "goal":
+        if told.status == Status.REACHED and self._job.is_errand and not self._job.leader:
             self._end(t, NavStatus.REACHED, "goal reached")
             self._tell(t, "goal reached", "")
         elif told.status == Status.ABORTED:
@@ -326,7 +300,9 @@ class PlannerService(Service):
             self._try_at = t + AGAIN
         elif not self._job.allow_unknown:
             self._tell(t, f"{self._job.name}: goal given up", reason, Event.WARNING)
-            self._goal = None
+            if self._job.is_errand:
+                self._book.go_on(reached=False)
+                self._job = IDLE
 
     def _tell_recoveries(self) -> None:
         log = self._navigator.log
@@ -340,6 +316,7 @@ class PlannerService(Service):
             timestamp=stamp(t), job=self._job.name, reason=self._reason or told.reason, explored=self._exploration.explorer.explored
         )
         status.state, status.recoveries = self._state(told.status), told.recoveries
+        self._book.show(status)
         if self._target is not None:
             x, y, _ = compose(self._world_from_map, Pose2(self._target[0], self._target[1], 0.0))
             status.goal.x, status.goal.y = x, y
@@ -360,3 +337,9 @@ class PlannerService(Service):
 
     def _tell(self, t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> None:
         self._events.append(Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source="planner"))
+
+
+def _places(poses: dict[str, PoseInFrame]) -> dict[str, Point]:
+    """m, world, of those that are numbers."""
+    places = {name: (message.pose.position.x, message.pose.position.y) for name, message in poses.items()}
+    return {name: place for name, place in places.items() if isfinite(place[0]) and isfinite(place[1])}

@@ -19,9 +19,11 @@ from uvf.planning.costmap.own_ground import (
     with_own_ground,
     with_way_out,
 )
+from uvf.planning.global_planners.planner import GlobalPlannerSettings, PathQuery, Refusal
+from uvf.planning.global_planners.planners import make_global_planner
 from uvf.planning.navigation.failures import Failure
 from uvf.planning.search.grid_search import Cell, CostToGo, GridSearch
-from uvf.planning.smoothing import SPACING, length, smoothed
+from uvf.planning.smoothing import SPACING, length, resample, smoothed
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
@@ -29,7 +31,14 @@ Point = tuple[float, float]
 UNKNOWN_COST = 3.0
 """Factor on the cost of unknown ground for goals that may lie behind it."""
 
-
+SECONDS = 1.0  # wall time that sampling planners may take for a path
+FAILURES = {
+    Refusal.START_OUTSIDE_MAP: Failure.START_OUTSIDE_MAP,
+    Refusal.GOAL_OUTSIDE_MAP: Failure.GOAL_OUTSIDE_MAP,
+    Refusal.START_OCCUPIED: Failure.START_OCCUPIED,
+    Refusal.GOAL_OCCUPIED: Failure.GOAL_OCCUPIED,
+    Refusal.TIMED_OUT: Failure.TIMED_OUT,
+}
 MOST_CELLS = 8_000_000
 """Of a map, 140 x 140 m in cells of 5 cm: a step that plans over it takes seconds, and one of 6 s is ended."""
 MOST_POINTS = 100_000
@@ -60,6 +69,8 @@ class PlannedBody:
     cost_travel_multiplier: float = 2.0
     """How much longer a path may be, 1 + this times, to stay out of the highest cost (Nav2's Smac planners)."""
     sensor_offset: float = 0.0  # m from the centre to the lidar that draws the map
+    planner: str = "astar"
+    """By its name in ``global_planners.planners.PLANNERS``; the hybrid ones need headings and are not for this."""
 
 
 class GlobalPlanner:
@@ -183,6 +194,8 @@ class GlobalPlanner:
             return PlannedPath(None, "the goal lies outside the map", Failure.GOAL_OUTSIDE_MAP)
         rows, columns = known.values.shape
         there = (min(max(there[0], 0), rows - 1), min(max(there[1], 0), columns - 1))
+        if self._body.planner != "astar":
+            return self._otherwise(known, start, there, allow_unknown)
         found = GridSearch(self._leaving(known, here).values, self._factors(allow_unknown)).astar(here, there)
         if found is None:
             return self._no_way(known, start, there)
@@ -192,6 +205,17 @@ class GlobalPlanner:
             points = np.vstack((points[:-1], goal)) if len(points) > 1 else np.array((start, goal))
         too_far = _too_far(points)
         return PlannedPath(None, too_far, Failure.GOAL_TOO_FAR) if too_far else PlannedPath(smoothed(points, known, self._needed))
+
+    def _otherwise(self, known: Costmap, start: Point, there: Cell, allow_unknown: bool) -> PlannedPath:
+        """By the planner that was chosen, which makes its own path; from the start to the middle of a cell."""
+        x, y = known.points(np.array((there,)))[0].tolist()
+        usual = GlobalPlannerSettings(self._body.cost_travel_multiplier, UNKNOWN_COST if allow_unknown else -1.0)
+        planner = make_global_planner(self._body.planner, self._leaving(known, known.cell(*start)), usual)
+        found = planner.plan(PathQuery((*start, 0.0), (x, y, 0.0), seconds=SECONDS))
+        if found.path is not None:
+            return PlannedPath(resample(found.path[:, :2]))
+        failure = FAILURES.get(found.refusal, Failure.NO_VALID_PATH) if found.refusal is not None else Failure.NO_VALID_PATH
+        return PlannedPath(None, f"{self._body.planner}: {found.reason or failure.value}", failure)
 
     def _no_way(self, known: Costmap, start: Point, goal: Cell) -> PlannedPath:
         """Why none was found: by where the vehicle stands, by the goal, or by what lies between."""

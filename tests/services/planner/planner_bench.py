@@ -22,7 +22,7 @@ from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
 
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
-NOTHING = NOTHING_ELSE | dict.fromkeys(("scan", "report", "keep_out", "mission", "progress", "bounds", "rally"))
+NOTHING = NOTHING_ELSE | {"team": {}} | dict.fromkeys(("scan", "report", "keep_out", "mission", "progress", "bounds", "rally"))
 START = (10.0, 20.0, np.pi / 2)
 """The map lies here in the world, turned: map x is world y."""
 
@@ -31,7 +31,7 @@ def planner(explores=False, offset=0.0, sensors=NO_OTHERS):
     """Of a round vehicle of 0.1 m with a lidar ``offset`` [m] ahead of its centre."""
     footprint = RobotFootprint.circle(0.1)
     seeing = sensors_of(footprint, Transform(np.array((1.0, 0.0, 0.0, 0.0)), np.array((offset, 0.0, 0.1))), sensors=sensors)
-    return PlannerService(START, PlannedVehicle(footprint, seeing, 0.45, explores), PlannerParams())
+    return PlannerService(START, PlannedVehicle(footprint, seeing, 0.45, explores, "v"), PlannerParams())
 
 
 CANCEL = CancelRequest(source="test")
@@ -50,11 +50,11 @@ class Bench:
         self.events = []
         self.asked = []
 
-    def step(self, n=1, status=READY, goal=(), cancel=(), preview=(), **heard):
+    def step(self, n=1, status=READY, goal=(), route=(), follow=(), cancel=(), preview=(), **heard):
         for _ in range(n):
             self.t += 0.25
             pose = PoseInFrame(timestamp=stamp(self.t), pose=planar_pose(*world(*self.here), self.yaw))
-            asks = {"goal": list(goal), "cancel": list(cancel), "preview": list(preview)}
+            asks = {"goal": list(goal), "route": list(route), "follow": list(follow), "cancel": list(cancel), "preview": list(preview)}
             told = NOTHING | {"status": status, "pose": [pose], "map": self.grid} | asks | heard
             self.said = stepped(self.service, self.t, **told)
             self.events += [e.text for e in self.said["events"]]

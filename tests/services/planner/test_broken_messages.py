@@ -48,7 +48,9 @@ class Bench:
     def __init__(self):
         self.bus, self.told, self.t = LocalBus(), [], 0.0
         makers = {
-            PlannerService: lambda: PlannerService(IDENTITY, PlannedVehicle(FOOTPRINT, sensors_of(FOOTPRINT), 0.45, True), PlannerParams()),
+            PlannerService: lambda: PlannerService(
+                IDENTITY, PlannedVehicle(FOOTPRINT, sensors_of(FOOTPRINT), 0.45, True, "v"), PlannerParams()
+            ),
             TrackerService: lambda: TrackerService(BODY, FOOTPRINT, sensors_of(FOOTPRINT), TrackerParams()),
         }
         self.shells = [ServiceRunner(ServiceInstance(kind, make, "v"), self.bus, self.told.append) for kind, make in makers.items()]

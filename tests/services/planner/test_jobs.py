@@ -3,7 +3,7 @@
 import pytest
 
 from schemas.messages import Mission, MissionItem, MissionProgress, Mode, RallyPoints, Vector3, VehicleStatus
-from services.planner.jobs import EXPLORE, IDLE, Goal, Orders, ReturnPoints, choose, mission_target, not_now
+from services.planner.jobs import EXPLORE, IDLE, Errand, Goal, Orders, ReturnPoints, choose, mission_target, not_now
 
 HOME = (1.0, 2.0)
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True)
@@ -15,7 +15,7 @@ def progress(**fields):
 
 
 def test_the_order_is_return_goal_mission_explore_idle():
-    goal, target = Goal((3.0, 3.0), 0.5), (7.0, 8.0)
+    goal, target = Errand("goal", (Goal((3.0, 3.0), 0.5),)), (7.0, 8.0)
     returning = VehicleStatus(mode=Mode.MODE_RETURN)
     assert choose(returning, goal, target, Orders(HOME, explores=True)).target == HOME
     assert choose(READY, goal, target, Orders(HOME, explores=True)).name == "goal"
@@ -52,3 +52,31 @@ def test_the_way_back_leads_to_what_is_nearest_when_it_begins_and_does_not_chang
     assert return_points.step(returning, (0.0, 9.0), HOME, rally) == (10.0, 0.0)
     assert return_points.step(READY, (0.0, 9.0), HOME, rally) == (0.0, 10.0)
     assert return_points.step(returning, (0.0, 9.0), HOME, None) == HOME  # taken away on the way
+
+
+A, B, C = Goal((1.0, 0.0)), Goal((2.0, 0.0)), Goal((3.0, 0.0))
+
+
+def driven(errand, *outcomes):
+    """Where an errand leads, place by place, with what becomes of each."""
+    seen = []
+    for reached in outcomes:
+        if errand is None:
+            break
+        seen.append(errand.goal)
+        errand = errand.after(reached)
+    return seen, errand
+
+
+def test_waypoints_end_at_the_last_and_a_patrol_begins_again():
+    assert driven(Errand("waypoints", (A, B, C)), True, True, True) == ([A, B, C], None)
+    seen, left = driven(Errand("patrol", (A, B, C), repeats=True), *[True] * 5)
+    assert seen == [A, B, C, A, B]
+    assert left.goal == C
+
+
+def test_a_place_that_cannot_be_reached_is_left_out_and_none_at_all_ends_it():
+    seen, left = driven(Errand("patrol", (A, B, C), repeats=True), True, False, True, True, False, False, False)
+    assert seen == [A, B, C, A, B, C, A]
+    assert left is None
+    assert driven(Errand("goal", (A,)), False) == ([A], None)

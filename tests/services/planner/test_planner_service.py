@@ -307,3 +307,18 @@ def test_a_lidar_ahead_of_the_vehicle_shows_enough_to_begin_with():
     bench.service = planner(True, 0.2)
     bench.grid = occupancy_grid(cells[:, 24:], 0.05, 1.2, 0.0, "v/map", 0.0)
     assert bench.step(2).state == NavStatus.DRIVING
+
+
+@pytest.mark.parametrize("name", ["dijkstra", "jump_points", "theta_star", "rrt_star", "rrt_connect", "prm", "visibility_graph", "voronoi"])
+def test_the_path_is_that_of_the_planner_that_was_chosen(name):
+    bench = Bench()
+    bench.service.params = PlannerParams(global_planner=name)
+    walled = room(4.0, 3.0)
+    walled[:40, 38:42] = 100
+    bench.grid = occupancy_grid(walled, 0.05, 0.0, 0.0, "v/map", 0.0)
+    bench.step(goal=[asked(3.0, 1.0)])
+    assert bench.said["goal"][0].accepted
+    path = np.array([(p.position.y - 20.0, 10.0 - p.position.x) for p in bench.said["path"].poses])
+    assert path[0] == pytest.approx((1.0, 1.0), abs=0.06)
+    assert path[-1] == pytest.approx((3.0, 1.0), abs=0.06)
+    assert path[np.abs(path[:, 0] - 2.0) < 0.1, 1].min() > 2.0 + 0.1

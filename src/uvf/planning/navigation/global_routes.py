@@ -12,7 +12,7 @@ from uvf.planning.costmap.obstacle_layer import ObstacleLayer
 from uvf.planning.costmap.zone_mask import KEPT_OUT, ZoneMask
 from uvf.planning.global_planner import GlobalPlanner
 from uvf.planning.navigation.navigator import NavigationGoal, Route
-from uvf.planning.navigation.routes import KnownFree, still_free
+from uvf.planning.navigation.routes import KnownFree, one_after_the_other, still_free
 
 Floats = NDArray[np.float64]
 Cells = NDArray[np.int8]
@@ -73,9 +73,12 @@ class GlobalRoutes:
     def plan(self, pose: Pose2, goal: NavigationGoal) -> Route:
         """The best path to the goal."""
         self.look((pose[0], pose[1]))
-        planned = self._planner.plan((pose[0], pose[1]), (goal.x, goal.y), self.allow_unknown)
-        route = Route(planned.path, planned.failure, planned.reason)
+        route = one_after_the_other(self._between, pose, goal)
         return route if self._planner.costs is None else self._known_free.judged(route, self._planner.costs)
+
+    def _between(self, here: tuple[float, float], there: tuple[float, float]) -> Route:
+        planned = self._planner.plan(here, there, self.allow_unknown)
+        return Route(planned.path, planned.failure, planned.reason)
 
     def is_free(self, path: Floats) -> bool:
         """Whether the vehicle's centre may still be everywhere on the path."""

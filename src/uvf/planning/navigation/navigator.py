@@ -1,7 +1,8 @@
 """Navigate to a pose: plan, follow, watch the progress, and recover by the cause; every step is told with its reason."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from itertools import chain
 from math import hypot, inf
 from typing import Protocol
 
@@ -31,6 +32,8 @@ class NavigationGoal:
     yaw: float | None = None
     tolerance: float = 0.25  # m from it that counts as there
     most_recoveries: int = 30  # in all
+    via: tuple[tuple[float, float], ...] = ()
+    """Places [m, planning frame] to pass on the way, in this order."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +83,7 @@ class NavigatorSettings:
 
     yaw_goal_tolerance: float = 0.1  # rad
     replan_period: float = 1.0  # s
+    passed: float = 0.35  # m from a place on the way that counts as passed
     recovered: float = 1.0  # m of the way by which it must have become shorter for recoveries to begin from the first again
     circumscribed_radius: float = 0.3  # m, of the footprint
     progress: ProgressSettings = field(default_factory=ProgressSettings)
@@ -127,7 +131,7 @@ class Navigator:
 
     def start(self, t: float, goal: NavigationGoal) -> None:
         """Takes a goal at ``t`` [s]; the one before is preempted."""
-        if not (np.isfinite(goal.x) and np.isfinite(goal.y) and (goal.yaw is None or np.isfinite(goal.yaw))):
+        if not (np.isfinite((goal.x, goal.y, *chain.from_iterable(goal.via))).all() and (goal.yaw is None or np.isfinite(goal.yaw))):
             raise ValueError(f"goal: ({goal.x}, {goal.y}, {goal.yaw}); its coordinates must be finite [m, m, rad]")
         self._goal, self._status = goal, Status.FOLLOWING
         self._failure, self._reason = Failure.NONE, ""
@@ -137,6 +141,11 @@ class Navigator:
         self._progress.new_way(t)
         if self._directive.action != Action.FOLLOW:
             self._direct(Action.STOP)
+
+    def lead_on(self, t: float, goal: NavigationGoal) -> None:
+        """The goal that is being driven to has moved at ``t`` [s]: recoveries go on where they are."""
+        self._goal, self._planned_at = goal, -inf
+        self._progress.new_way(t)
 
     def cancel(self, t: float) -> None:
         """Gives the goal up because somebody asked for it; the vehicle stops."""
@@ -166,6 +175,7 @@ class Navigator:
         self._measure(t, pose)
         if not self.is_busy or self._goal is None:
             return self._directive
+        self._pass(pose)
         if self._is_reached(pose, self._goal):
             self._end(t, Status.REACHED, Failure.NONE, "")
         elif self._status == Status.RECOVERING:
@@ -173,6 +183,12 @@ class Navigator:
         if self._status == Status.FOLLOWING:
             self._follow(t, pose, self._goal, report)
         return self._directive
+
+    def _pass(self, pose: Pose2) -> None:
+        """Strikes off the places on the way that have been passed."""
+        goal = self._goal
+        if goal is not None and goal.via and hypot(pose[0] - goal.via[0][0], pose[1] - goal.via[0][1]) <= self.settings.passed:
+            self._goal = replace(goal, via=goal.via[1:])
 
     def _follow(self, t: float, pose: Pose2, goal: NavigationGoal, report: Report) -> None:
         blocked = self._directive.action == Action.FOLLOW and not self._source.is_free(self._directive.path)
@@ -260,7 +276,7 @@ class Navigator:
         return self._source.plan(pose, goal)
 
     def _is_reached(self, pose: Pose2, goal: NavigationGoal) -> bool:
-        if hypot(pose[0] - goal.x, pose[1] - goal.y) > goal.tolerance:
+        if goal.via or hypot(pose[0] - goal.x, pose[1] - goal.y) > goal.tolerance:
             return False
         return goal.yaw is None or abs(wrap(pose[2] - goal.yaw)) <= self.settings.yaw_goal_tolerance
 

@@ -1,5 +1,8 @@
 """Routes over what the sensors have seen, for a vehicle without a map: unknown ground is taken for free."""
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +16,7 @@ from uvf.planning.search.grid_search import GridSearch
 from uvf.planning.smoothing import resample
 
 Floats = NDArray[np.float64]
+Point = tuple[float, float]
 
 INSET = 0.3  # m from the window's border to where a goal beyond it is sought
 UNDERFOOT = 0.4  # m of a path's beginning that does not count when it is looked at again: the vehicle stands there
@@ -28,7 +32,7 @@ class LayerRoutes:
     def plan(self, pose: Pose2, goal: NavigationGoal) -> Route:
         """The best path to the goal, or to the place in its direction where the window ends."""
         costs = self._controller.leaving(self._controller.costmap(), pose)
-        return self._known_free.judged(route_over(costs, self._controller.factors, pose, goal), costs)
+        return self._known_free.judged(one_after_the_other(partial(route_over, costs, self._controller.factors), pose, goal), costs)
 
     def is_free(self, path: Floats) -> bool:
         """Whether the vehicle's centre may still be everywhere on the path."""
@@ -40,6 +44,24 @@ class LayerRoutes:
 
     def reset(self) -> None:
         """Nothing is known but what the layer holds."""
+
+
+def one_after_the_other(plan: Callable[[Point, Point], Route], pose: Pose2, goal: NavigationGoal) -> Route:
+    """The route through the places on the way to the goal; a place that something stands on is left out.
+
+    plan: from one place to another [m].
+    """
+    here, paths = (pose[0], pose[1]), []
+    for place in goal.via:
+        route = plan(here, place)
+        if route.failure == Failure.GOAL_OCCUPIED:
+            continue
+        if route.path is None:
+            return route
+        paths.append(route.path)
+        here = place
+    last = plan(here, (goal.x, goal.y))
+    return last if last.path is None else Route(np.concatenate((*paths, last.path)))
 
 
 class KnownFree:
@@ -73,24 +95,24 @@ def _well_known(costs: Costmap, path: Floats) -> Floats:
     return known
 
 
-def route_over(costs: Costmap, factors: Floats, pose: Pose2, goal: NavigationGoal) -> Route:
-    """The cheapest route by A* over a costmap, to the goal or, where it lies beyond, to the border in its direction.
+def route_over(costs: Costmap, factors: Floats, here: Point, there: Point) -> Route:
+    """The cheapest route by A* over a costmap from here to there [m] or, where that lies beyond, to the border in its direction.
 
     factors: (256,) cost factors [-] by value.
     """
-    start, cell = costs.cell(pose[0], pose[1]), costs.cell(goal.x, goal.y)
+    start, cell = costs.cell(*here), costs.cell(*there)
     if not costs.holds(start):
         return Route(None, Failure.START_OUTSIDE_MAP)
     if costs.holds(cell) and INSCRIBED <= costs.values[cell] < NO_INFORMATION:
         return Route(None, Failure.GOAL_OCCUPIED)
-    at = cell if costs.holds(cell) else _towards(costs, pose, goal)
+    at = cell if costs.holds(cell) else _towards(costs, here, there)
     found = GridSearch(costs.values, factors).astar(start, at)
     if found is None:
         return Route(None, Failure.NO_VALID_PATH)
     points = costs.points(found.cells)
-    points[0] = pose[:2]
+    points[0] = here
     if costs.holds(cell):
-        points[-1] = goal.x, goal.y
+        points[-1] = there
     return Route(resample(points))
 
 
@@ -108,13 +130,13 @@ def _cells(costs: Costmap, path: Floats) -> tuple[NDArray[np.int64], NDArray[np.
     return cells[inside], inside
 
 
-def _towards(costs: Costmap, pose: Pose2, goal: NavigationGoal) -> Cell:
+def _towards(costs: Costmap, here: Point, there: Point) -> Cell:
     """The cell in the goal's direction where the window ends; if it is not free, the nearest one to it that is."""
     rows, columns = costs.values.shape
     half = np.array((columns, rows)) * costs.resolution / 2 - INSET
-    ahead = np.array((goal.x - pose[0], goal.y - pose[1]))
+    ahead = np.array((there[0] - here[0], there[1] - here[1]))
     ahead = ahead * float((half / np.maximum(np.abs(ahead), 1e-9)).min())
-    row, column = costs.cell(pose[0] + ahead[0], pose[1] + ahead[1])
+    row, column = costs.cell(here[0] + ahead[0], here[1] + ahead[1])
     row, column = min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)
     open_cells = np.argwhere((costs.values < INSCRIBED) | (costs.values == NO_INFORMATION))
     if not len(open_cells):
