@@ -27,7 +27,7 @@ from foxglove_schemas_protobuf import Vector3_pb2 as foxglove_dot_Vector3__pb2
 from google.protobuf import timestamp_pb2 as google_dot_protobuf_dot_timestamp__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x17uvf/v1/navigation.proto\x12\x06uvf.v1\x1a\x13\x66oxglove/Pose.proto\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"\xed\x01\n\x0cNavDirective\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0e\n\x06number\x18\x02 \x01(\r\x12+\n\x06\x61\x63tion\x18\x03 \x01(\x0e\x32\x1b.uvf.v1.NavDirective.Action\x12\x0e\n\x06\x61mount\x18\x04 \x01(\x01\x12\x19\n\x0c\x63lear_beyond\x18\x05 \x01(\x01H\x00\x88\x01\x01\"5\n\x06\x41\x63tion\x12\x08\n\x04STOP\x10\x00\x12\n\n\x06\x46OLLOW\x10\x01\x12\x08\n\x04SPIN\x10\x02\x12\x0b\n\x07\x42\x41\x43K_UP\x10\x03\x42\x0f\n\r_clear_beyond\"\xe7\x01\n\tNavReport\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0e\n\x06number\x18\x02 \x01(\r\x12&\n\x05\x64rive\x18\x03 \x01(\x0e\x32\x17.uvf.v1.NavReport.Drive\x12\x0c\n\x04\x64one\x18\x04 \x01(\x08\x12\x12\n\nimpossible\x18\x05 \x01(\x08\"Q\n\x05\x44rive\x12\x0b\n\x07\x44RIVING\x10\x00\x12\x0b\n\x07NO_PATH\x10\x01\x12\x14\n\x10NO_VALID_CONTROL\x10\x02\x12\x0b\n\x07STOPPED\x10\x03\x12\x0b\n\x07\x41RRIVED\x10\x04\"E\n\x0ePreviewRequest\x12#\n\x08position\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06source\x18\x02 \x01(\t\"\x84\x01\n\x0cPreviewReply\x12\x10\n\x08\x61\x63\x63\x65pted\x18\x01 \x01(\x08\x12\x0e\n\x06reason\x18\x02 \x01(\t\x12\x1d\n\x05poses\x18\x03 \x03(\x0b\x32\x0e.foxglove.Pose\x12\x0e\n\x06length\x18\x04 \x01(\x01\x12\x10\n\x08\x64uration\x18\x05 \x01(\x01\x12\x11\n\tclearance\x18\x06 \x01(\x01\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x17uvf/v1/navigation.proto\x12\x06uvf.v1\x1a\x13\x66oxglove/Pose.proto\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"\x8b\x02\n\x0cNavDirective\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0e\n\x06number\x18\x02 \x01(\r\x12+\n\x06\x61\x63tion\x18\x03 \x01(\x0e\x32\x1b.uvf.v1.NavDirective.Action\x12\x0e\n\x06\x61mount\x18\x04 \x01(\x01\x12\x12\n\x05until\x18\x06 \x01(\x01H\x00\x88\x01\x01\x12\x19\n\x0c\x63lear_beyond\x18\x05 \x01(\x01H\x01\x88\x01\x01\"5\n\x06\x41\x63tion\x12\x08\n\x04STOP\x10\x00\x12\n\n\x06\x46OLLOW\x10\x01\x12\x08\n\x04SPIN\x10\x02\x12\x0b\n\x07\x42\x41\x43K_UP\x10\x03\x42\x08\n\x06_untilB\x0f\n\r_clear_beyond\"\xe7\x01\n\tNavReport\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0e\n\x06number\x18\x02 \x01(\r\x12&\n\x05\x64rive\x18\x03 \x01(\x0e\x32\x17.uvf.v1.NavReport.Drive\x12\x0c\n\x04\x64one\x18\x04 \x01(\x08\x12\x12\n\nimpossible\x18\x05 \x01(\x08\"Q\n\x05\x44rive\x12\x0b\n\x07\x44RIVING\x10\x00\x12\x0b\n\x07NO_PATH\x10\x01\x12\x14\n\x10NO_VALID_CONTROL\x10\x02\x12\x0b\n\x07STOPPED\x10\x03\x12\x0b\n\x07\x41RRIVED\x10\x04\"E\n\x0ePreviewRequest\x12#\n\x08position\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06source\x18\x02 \x01(\t\"\x84\x01\n\x0cPreviewReply\x12\x10\n\x08\x61\x63\x63\x65pted\x18\x01 \x01(\x08\x12\x0e\n\x06reason\x18\x02 \x01(\t\x12\x1d\n\x05poses\x18\x03 \x03(\x0b\x32\x0e.foxglove.Pose\x12\x0e\n\x06length\x18\x04 \x01(\x01\x12\x10\n\x08\x64uration\x18\x05 \x01(\x01\x12\x11\n\tclearance\x18\x06 \x01(\x01\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -35,15 +35,15 @@ _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'uvf.v1.navigation_pb2', _gl
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
   _globals['_NAVDIRECTIVE']._serialized_start=114
-  _globals['_NAVDIRECTIVE']._serialized_end=351
-  _globals['_NAVDIRECTIVE_ACTION']._serialized_start=281
-  _globals['_NAVDIRECTIVE_ACTION']._serialized_end=334
-  _globals['_NAVREPORT']._serialized_start=354
-  _globals['_NAVREPORT']._serialized_end=585
-  _globals['_NAVREPORT_DRIVE']._serialized_start=504
-  _globals['_NAVREPORT_DRIVE']._serialized_end=585
-  _globals['_PREVIEWREQUEST']._serialized_start=587
-  _globals['_PREVIEWREQUEST']._serialized_end=656
-  _globals['_PREVIEWREPLY']._serialized_start=659
-  _globals['_PREVIEWREPLY']._serialized_end=791
+  _globals['_NAVDIRECTIVE']._serialized_end=381
+  _globals['_NAVDIRECTIVE_ACTION']._serialized_start=301
+  _globals['_NAVDIRECTIVE_ACTION']._serialized_end=354
+  _globals['_NAVREPORT']._serialized_start=384
+  _globals['_NAVREPORT']._serialized_end=615
+  _globals['_NAVREPORT_DRIVE']._serialized_start=534
+  _globals['_NAVREPORT_DRIVE']._serialized_end=615
+  _globals['_PREVIEWREQUEST']._serialized_start=617
+  _globals['_PREVIEWREQUEST']._serialized_end=686
+  _globals['_PREVIEWREPLY']._serialized_start=689
+  _globals['_PREVIEWREPLY']._serialized_end=821
 # @@protoc_insertion_point(module_scope)

@@ -10,7 +10,7 @@ from typing import ClassVar as _ClassVar, Iterable as _Iterable, Mapping as _Map
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class NavDirective(_message.Message):
-    __slots__ = ("timestamp", "number", "action", "amount", "clear_beyond")
+    __slots__ = ("timestamp", "number", "action", "amount", "until", "clear_beyond")
     class Action(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
         STOP: _ClassVar[NavDirective.Action]
@@ -25,13 +25,15 @@ class NavDirective(_message.Message):
     NUMBER_FIELD_NUMBER: _ClassVar[int]
     ACTION_FIELD_NUMBER: _ClassVar[int]
     AMOUNT_FIELD_NUMBER: _ClassVar[int]
+    UNTIL_FIELD_NUMBER: _ClassVar[int]
     CLEAR_BEYOND_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     number: int
     action: NavDirective.Action
     amount: float
+    until: float
     clear_beyond: float
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., number: _Optional[int] = ..., action: _Optional[_Union[NavDirective.Action, str]] = ..., amount: _Optional[float] = ..., clear_beyond: _Optional[float] = ...) -> None: ...
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., number: _Optional[int] = ..., action: _Optional[_Union[NavDirective.Action, str]] = ..., amount: _Optional[float] = ..., until: _Optional[float] = ..., clear_beyond: _Optional[float] = ...) -> None: ...
 
 class NavReport(_message.Message):
     __slots__ = ("timestamp", "number", "drive", "done", "impossible")

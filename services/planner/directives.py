@@ -32,6 +32,8 @@ NOTHING_DONE = Report(-1)
 def directive_message(t: float, directive: Directive) -> NavDirective:
     """At ``t`` [s]; the path goes its own way."""
     message = NavDirective(timestamp=stamp(t), number=directive.number, action=ACTIONS[directive.action], amount=directive.amount)
+    if directive.until is not None:
+        message.until = directive.until
     if directive.clear_beyond is not None:
         message.clear_beyond = directive.clear_beyond
     return message
@@ -40,7 +42,9 @@ def directive_message(t: float, directive: Directive) -> NavDirective:
 def directive_of(message: NavDirective) -> Directive:
     """Without a path; an action that is not known means to stop."""
     clear_beyond = message.clear_beyond if message.HasField("clear_beyond") else None
-    return Directive(message.number, _ACTIONS_SAID.get(message.action, Action.STOP), amount=message.amount, clear_beyond=clear_beyond)
+    until = max(message.until, 0.0) if message.HasField("until") else None
+    action = _ACTIONS_SAID.get(message.action, Action.STOP)
+    return Directive(message.number, action, amount=message.amount, until=until, clear_beyond=clear_beyond)
 
 
 def report_message(t: float, report: Report) -> NavReport:

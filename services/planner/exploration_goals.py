@@ -1,6 +1,8 @@
 """Where a vehicle goes that explores: the frontiers of its map, and a patrol when there are none left."""
 
-from uvf.planning.exploration import Explorer, Patrol
+from collections.abc import Sequence
+
+from uvf.planning.exploration import Explorer, OthersGoal, Patrol
 from uvf.planning.frontiers import FrontierWeights
 from uvf.planning.global_planner import GlobalPlanner
 
@@ -20,13 +22,13 @@ class ExplorationGoals:
         """The vehicle begins to explore, or does something else from now on."""
         self.is_shut_in, self.explorer.goal = False, None
 
-    def choose(self, t: float, here: Point) -> tuple[Point | None, str]:
-        """The goal at ``t`` [s] for a vehicle at ``here``, kept as long as it is worth it; None and why where there is none."""
+    def choose(self, t: float, here: Point, others: Sequence[OthersGoal]) -> tuple[Point | None, str]:
+        """The goal at ``t`` [s] for a vehicle at ``here``, kept as long as it is worth it; None and why where none is."""
         ways, costs, reason = self._planner.ways(here), self._planner.costs, self._planner.shut_in(here)
         self.is_shut_in = bool(reason)
         if reason or ways is None or costs is None:
             return None, reason
-        target = self.explorer.choose(t, costs, ways) or self._patrol.choose(here, costs, ways)
+        target = self.explorer.choose(t, costs, ways, others) or self._patrol.choose(here, costs, ways)
         return target, "" if target else "everything is explored"
 
     def done(self, t: float) -> None:

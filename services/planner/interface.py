@@ -43,6 +43,8 @@ class Inputs(Reads):
     sonar: list[Range] = optional(every(topics.SONAR))
     contact: list[Contact] = optional(every(topics.CONTACT))
     team: dict[str, PoseInFrame] = each_vehicle(optional(topics.POSE))
+    team_path: dict[str, PosesInFrame] = each_vehicle(optional(topics.PATH))
+    team_nav: dict[str, NavStatus] = each_vehicle(optional(topics.NAV_STATUS))
     report: NavReport | None = optional(topics.NAV_REPORT)
     keep_out: Grid | None = optional(topics.KEEP_OUT)
     status: VehicleStatus | None = optional(topics.STATUS)

@@ -43,4 +43,8 @@ class PlannerParams(Params, frozen=True):
     patience: Annotated[Positive, key("s", "Time without progress before a recovery begins.")] = 4.0
     replan_period: Annotated[Positive, key("s", "Time after which a path is planned anew, also when nothing is in the way.")] = 1.0
     min_frontier_size: Annotated[int, Meta(ge=1), key("cells", "Smallest frontier that is explored.")] = 6
-    frontier_gain: Annotated[float, Meta(ge=0), key("cells", "Path length that a cell of frontier is worth.")] = 0.5
+    frontier_choice: Annotated[
+        Literal["nearest", "size", "information_gain"],
+        plain("Frontier that is explored first: the nearest, a near and wide one, or where most unknown ground could be seen for the way."),
+    ] = "size"
+    frontier_gain: Annotated[float, Meta(ge=0), key("cells", "Path length that a cell of frontier is worth, by size.")] = 0.5

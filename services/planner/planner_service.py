@@ -1,5 +1,6 @@
 """Map, pose and job -> what the tracker is to do, four times a second: a path to follow, or a recovery."""
 
+from dataclasses import replace
 from math import hypot, inf, isfinite, isinf
 
 import numpy as np
@@ -12,7 +13,6 @@ from schemas.messages import (
     ModeRequest,
     NavDirective,
     NavStatus,
-    PoseInFrame,
     PosesInFrame,
     Reply,
 )
@@ -26,13 +26,18 @@ from services.planner.obstacle_sensors import OtherReadings
 from services.planner.params import PlannerParams
 from services.planner.planned_vehicle import PlannedVehicle
 from services.planner.planning_ground import PlanningGround
+from services.planner.team import exploring, places, travellers
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose
 from uvf.planning.costmap.inflation import Inflation
-from uvf.planning.frontiers import FrontierWeights
+from uvf.planning.exploration import OthersGoal
+from uvf.planning.frontiers import FrontierChoice, FrontierWeights
 from uvf.planning.global_planner import NO_PLACE, GlobalPlanner, PlannedBody
+from uvf.planning.navigation.directive import Action, Directive
 from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings, Status
 from uvf.planning.navigation.progress import ProgressSettings
+from uvf.planning.navigation.right_of_way import PassageSizes, Traveller, give_way
+from uvf.planning.smoothing import from_place
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
 
@@ -41,6 +46,7 @@ Point = tuple[float, float]
 
 FRONTIER_VIEW = 0.4  # m from a frontier, from where it is seen well enough
 EXPLORING_RECOVERIES = 2  # before another goal is chosen: there are more of them
+ROOM = 0.1  # m between two vehicles that pass each other
 MOVED = 0.2  # m of the place behind who is followed, from which on the way there is planned anew
 AGAIN = 10.0  # s after which a place of the mission, or home, is tried again where nobody has changed the mode
 PUSHED = 3.0  # times the tolerance from a place that was reached, from where it is driven to again
@@ -85,6 +91,9 @@ class PlannerService(Service):
         self._try_at = inf
         """When a place that was given up is tried again."""
         self._told = 0
+        self._others: list[OthersGoal] = []
+        self._waits_for = ""
+        """The vehicle that comes first through a narrow passage."""
         self._asks: list[ModeRequest] = []
         self._events: list[Event] = []
         self._desk = GoalDesk(self._planner, world_from_map, vehicle.speed)
@@ -99,7 +108,8 @@ class PlannerService(Service):
         self._fit()
         self._ground.keep_out(now.keep_out)
         changed = self._ground.look(t, now.map, now.scan, OtherReadings(now.depth, now.info, now.sonar, now.contact))
-        self._book.team = {name: places for name, places in _places(now.team).items() if name != self._vehicle.name}
+        self._book.team = places(self._vehicle.name, now.team)
+        self._others = exploring(self._vehicle.name, now.team_nav, self._desk.in_map)
         goal_replies, goal = self._book.take_goals(here, now.goal, now.status)
         route_replies, route = self._book.take_routes(here, now.route, now.status)
         follow_replies, follow = self._book.take_follows(now.follow, now.status)
@@ -115,9 +125,10 @@ class PlannerService(Service):
             self._begin(t, job)
         cancel_replies = [self._cancel(t, request) for request in now.cancel]
         self._aim(t, here, changed)
-        if now.status is None or now.status.command_source != "planner":
+        if now.status is None or now.status.command_source != "planner" or self._waits_for:
             self._navigator.pause(t, here)
         directive = self._navigator.step(t, here, report_of(now.report))
+        directive = self._give_way(t, directive, now)
         self._ground.heed(directive)
         self._follow_up(t)
         self._tell_recoveries()
@@ -158,8 +169,15 @@ class PlannerService(Service):
         return PlannedBody(self._footprint.padded(params.margin), inflation, params.cost_travel_multiplier, offset, params.global_planner)
 
     @property
+    def _passage(self) -> PassageSizes:
+        apart = 2.0 * self._footprint.circumscribed_radius + ROOM
+        return PassageSizes(apart, apart)
+
+    @property
     def _taste(self) -> FrontierWeights:
-        return FrontierWeights(self.params.min_frontier_size, FRONTIER_VIEW, self.params.frontier_gain)
+        return FrontierWeights(
+            self.params.min_frontier_size, FRONTIER_VIEW, self.params.frontier_gain, FrontierChoice(self.params.frontier_choice)
+        )
 
     @property
     def _patience(self) -> NavigatorSettings:
@@ -173,6 +191,25 @@ class PlannerService(Service):
         self._navigator.fit(self._patience)
         if self._planner.fit(self._body):
             self._navigator.replan()
+
+    def _give_way(self, t: float, directive: Directive, now: interface.Inputs) -> Directive:
+        """The directive as far as it may be followed now, for another vehicle comes through a passage that is too narrow for two."""
+        here, waited_for, self._waits_for = self._ground.here, self._waits_for, ""
+        if directive.action != Action.FOLLOW or here is None or not now.team_path:
+            return directive
+        own, passed = from_place(directive.path, here[:2])
+        wait = give_way(
+            Traveller(self._vehicle.name, own),
+            self._ground.routes.map_clearance(own),
+            travellers(now.team_path, self._book.team, self._desk.in_map),
+            self._passage,
+        )
+        if wait is None:
+            return directive
+        self._waits_for = wait.for_whom
+        if wait.for_whom != waited_for:
+            self._tell(t, f"waits for {wait.for_whom}", "it comes first through a narrow passage")
+        return replace(directive, until=passed + wait.until)
 
     def _tell_taken(self, t: float, what: str, sources: list[str]) -> None:
         """A new errand; asked for anew, the same one is begun anew."""
@@ -269,7 +306,7 @@ class PlannerService(Service):
 
     def _aim_exploring(self, t: float, here: Pose2) -> None:
         was_shut_in = self._exploration.is_shut_in
-        target, reason = self._exploration.choose(t, here[:2])
+        target, reason = self._exploration.choose(t, here[:2], self._others)
         if self._exploration.is_shut_in and not was_shut_in:
             self._tell(t, "explore: nothing can be planned", reason, Event.WARNING)
         if target is None:
@@ -313,7 +350,7 @@ class PlannerService(Service):
     def _nav_status(self, t: float) -> NavStatus:
         told = self._navigator.feedback
         status = NavStatus(
-            timestamp=stamp(t), job=self._job.name, reason=self._reason or told.reason, explored=self._exploration.explorer.explored
+            timestamp=stamp(t), job=self._job.name, reason=self._why or told.reason, explored=self._exploration.explorer.explored
         )
         status.state, status.recoveries = self._state(told.status), told.recoveries
         self._book.show(status)
@@ -326,6 +363,10 @@ class PlannerService(Service):
             status.time_left = told.time_remaining
         return status
 
+    @property
+    def _why(self) -> str:
+        return f"waits for {self._waits_for} at a narrow passage" if self._waits_for else self._reason
+
     def _state(self, status: Status) -> NavStatus.State:
         if self._ended_at is not None:
             return self._ending
@@ -337,9 +378,3 @@ class PlannerService(Service):
 
     def _tell(self, t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> None:
         self._events.append(Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source="planner"))
-
-
-def _places(poses: dict[str, PoseInFrame]) -> dict[str, Point]:
-    """m, world, of those that are numbers."""
-    places = {name: (message.pose.position.x, message.pose.position.y) for name, message in poses.items()}
-    return {name: place for name, place in places.items() if isfinite(place[0]) and isfinite(place[1])}

@@ -1,5 +1,6 @@
 """Directive, path, pose and the live scan -> velocity on ``cmd/planner``, ten times a second; never nearer to anything than allowed."""
 
+from dataclasses import replace
 from math import ceil
 from typing import Annotated, Literal
 
@@ -40,6 +41,7 @@ from uvf.planning.local.planners import make_local_planner
 from uvf.planning.local.window import WindowSettings
 from uvf.planning.navigation.directive import Action, Directive
 from uvf.planning.navigation.execution import Executor
+from uvf.planning.smoothing import first_part
 from uvf.runtime.contract.declaration import Reads, Writes, every, optional, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import pose2_of, seconds, stamp, yaw_of
@@ -62,7 +64,7 @@ class TrackerParams(Params, frozen=True):
     """Parameters of the path tracker."""
 
     local_planner: Annotated[
-        Literal["mppi", "dwa", "trajectory_rollout", "regulated_pure_pursuit", "elastic_band", "vfh_plus"],
+        Literal["mppi", "dwa", "trajectory_rollout", "regulated_pure_pursuit", "elastic_band", "vfh_plus", "pid"],
         plain("What chooses the velocity along the path."),
     ] = "mppi"
     speed: Annotated[Positive, key("m/s", "Speed on straight parts of the path.")] = 0.45
@@ -216,7 +218,9 @@ def _directive(message: NavDirective, path: PosesInFrame) -> Directive:
     if said.action != Action.FOLLOW:
         return said
     points = np.array([(p.position.x, p.position.y) for p in path.poses]).reshape(-1, 2)
-    return Directive(said.number, said.action, points, _final_heading(path), said.amount, said.clear_beyond)
+    if said.until is None:
+        return replace(said, path=points, heading=_final_heading(path))
+    return replace(said, path=first_part(points, said.until))
 
 
 def _final_heading(path: PosesInFrame) -> float | None:

@@ -7,8 +7,9 @@ from tests.services.planner.plans import room
 from uvf.planning.costmap.costmap import make_costmap
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import INSCRIBED, Inflation, cost_factors
-from uvf.planning.exploration import SHUN_TIME, Explorer, Patrol
-from uvf.planning.frontiers import FrontierWeights, frontiers
+from uvf.planning.exploration import SHUN_TIME, Explorer, OthersGoal, Patrol
+from uvf.planning.frontiers import FrontierChoice, FrontierWeights, frontiers
+from uvf.planning.information_gain import unknown_area
 from uvf.planning.search.grid_search import GridSearch
 
 BODY, INFLATION = RobotFootprint.circle(0.1), Inflation(0.2, 6.0)
@@ -111,3 +112,34 @@ def test_a_patrol_whose_goal_is_no_longer_on_the_map_goes_elsewhere():
     assert patrol.choose((1.0, 1.0), small, ways_from(small, 1.0, 1.0))[0] < 2.0
     patrol.goal = (-0.5, 1.0)  # the last columns, were it taken for an index
     assert patrol.choose((1.0, 1.0), small, ways_from(small, 1.0, 1.0))[0] > 0.0
+
+
+@pytest.mark.parametrize(("choice", "side"), [(FrontierChoice.NEAREST, 4), (FrontierChoice.INFORMATION_GAIN, 0)])
+def test_nearest_goes_to_the_near_crack_and_information_gain_to_the_wide_opening(choice, side):
+    costs = two_doors()
+    taste = FrontierWeights(least_size=4, view=0.3, worth=0.5, choice=choice)
+    found = frontiers(costs, ways_from(costs, 2.3, 1.0).cost, none_shunned(costs), taste)
+    assert round(costs.points(np.array((found[0].goal,)))[0][0]) == side
+
+
+def test_the_area_that_could_be_seen_is_that_of_the_circle_less_what_is_known_or_hidden():
+    unknown, taken = np.ones((81, 81), dtype=bool), np.zeros((81, 81), dtype=bool)
+    assert unknown_area(unknown, taken, (40, 40), 30.0) == pytest.approx(np.pi * 30.0**2, rel=0.04)
+    assert unknown_area(~unknown, taken, (40, 40), 30.0) == 0.0
+    taken[:, 45] = True
+    hidden = unknown_area(unknown, taken, (40, 40), 30.0) / (np.pi * 30.0**2)
+    assert 0.55 < hidden < 0.65
+    assert unknown_area(~unknown, ~taken & False, (0, 0), 30.0) == pytest.approx(0.75 * np.pi * 30.0**2, rel=0.06)
+
+
+def test_two_that_explore_go_to_different_frontiers_and_the_first_keeps_its_own():
+    costs = two_doors()
+    ways, wide, crack = ways_from(costs, 1.0, 1.0), (0.1, 0.9), (3.9, 0.9)
+    assert Explorer(TASTE).choose(0.0, costs, ways)[0] < 1.0
+    assert Explorer(TASTE).choose(0.0, costs, ways, [OthersGoal(wide, comes_first=True)])[0] > 3.0
+    both = [OthersGoal(wide, comes_first=True), OthersGoal(crack, comes_first=True)]
+    assert Explorer(TASTE).choose(0.0, costs, ways, both)[0] < 1.0
+    explorer = Explorer(TASTE)
+    explorer.choose(0.0, costs, ways)
+    assert explorer.choose(0.5, costs, ways, [OthersGoal(wide, comes_first=False)])[0] < 1.0
+    assert explorer.choose(1.0, costs, ways, [OthersGoal(wide, comes_first=True)])[0] > 3.0

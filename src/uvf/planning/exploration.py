@@ -1,24 +1,34 @@
 """Exploration: the frontier that is driven to now, those left alone for a while, and the patrol when all is known."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.grids import distance_field
 from uvf.planning.costmap.costmap import Costmap
-from uvf.planning.frontiers import FrontierWeights, frontier_mask, frontiers
+from uvf.planning.frontiers import Frontier, FrontierWeights, frontier_mask, frontiers
 from uvf.planning.search.grid_search import CostToGo
 
 Mask = NDArray[np.bool_]
 Point = tuple[float, float]
 
+APART = 2.5  # m from where another vehicle goes to explore, within which that one sees it too
 SHUN_RADIUS = 0.5  # m
 SHUN_TIME = 30.0  # s, tripled with each further time at the same place
 STILL_THERE = 0.7  # m from the goal within which the frontier must remain
 EASY = 32
 """Values below are at ease: far enough from every obstacle to stand there."""
 PATROL_REST = 1.5  # m, when no place is farther from those visited, the round begins again
+
+
+class OthersGoal(NamedTuple):
+    """Where another vehicle goes to explore [m, map frame], and whether it is asked first."""
+
+    place: Point
+    comes_first: bool
 
 
 @dataclass
@@ -40,17 +50,24 @@ class Explorer:
     """Estimate of the known part of the floor that can be reached, 0..1."""
     _shunned: list[Shunned] = field(default_factory=list)
 
-    def choose(self, t: float, costs: Costmap, ways: CostToGo) -> Point | None:
-        """The goal [m, map frame] to go to at ``t`` [s], None when there is nothing left to explore."""
+    def choose(self, t: float, costs: Costmap, ways: CostToGo, others: Sequence[OthersGoal] = ()) -> Point | None:
+        """The goal [m, map frame] to go to at ``t`` [s], None when there is nothing left to explore.
+
+        others: where the rest of the team goes; a frontier that none of them goes to comes first (Burgard et al. 2005).
+        """
         mask = self._shunned_mask(t, costs)
         found = frontiers(costs, ways.cost, mask, self.taste)
         self.explored = self._estimate(costs, ways, sum(f.size for f in found))
         if not found:
             self.goal = None
-        elif self.goal is None or not self.still_worth_it(t, costs):
-            x, y = costs.points(np.array([found[0].goal]))[0]
-            self.goal = (float(x), float(y))
+        elif self.goal is None or not self.still_worth_it(t, costs) or self._gives_way(others, [_place(costs, f) for f in found]):
+            self.goal = next((p for p in (_place(costs, f) for f in found) if not _is_taken(p, others)), _place(costs, found[0]))
         return self.goal
+
+    def _gives_way(self, others: Sequence[OthersGoal], places: Sequence[Point]) -> bool:
+        """Whether somebody who comes first goes to the same frontier, and there is another one."""
+        prior = [other for other in others if other.comes_first]
+        return self.goal is not None and _is_taken(self.goal, prior) and not all(_is_taken(place, others) for place in places)
 
     def still_worth_it(self, t: float, costs: Costmap) -> bool:
         """Whether at ``t`` [s] enough frontier is left about the goal."""
@@ -129,3 +146,12 @@ def disc(costs: Costmap, centre: Point, radius: float) -> Mask:
     y = costs.origin[1] + (np.arange(rows) + 0.5) * costs.resolution - centre[1]
     inside: Mask = y[:, None] ** 2 + x[None, :] ** 2 <= radius * radius
     return inside
+
+
+def _place(costs: Costmap, frontier: Frontier) -> Point:
+    x, y = costs.points(np.array([frontier.goal]))[0].tolist()
+    return x, y
+
+
+def _is_taken(place: Point, others: Sequence[OthersGoal]) -> bool:
+    return any(np.hypot(place[0] - x, place[1] - y) < APART for (x, y), _ in others)

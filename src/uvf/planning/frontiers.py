@@ -1,6 +1,7 @@
 """Frontiers: where known free ground meets unknown ground, and which one to drive to next (Yamauchi 1997)."""
 
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,11 +9,13 @@ from scipy import ndimage
 
 from uvf.maths.grids import distance_field
 from uvf.planning.costmap.costmap import Costmap
+from uvf.planning.information_gain import unknown_area, utility
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Cell = tuple[int, int]
 
+MOST_SIZE = 60  # cells of a frontier beyond which it is worth no more
 ALL_ROUND = np.ones((3, 3), dtype=int)
 
 
@@ -28,13 +31,25 @@ class Frontier:
     """Cost of the way there [cells]."""
 
 
+class FrontierChoice(Enum):
+    """Which frontier is best."""
+
+    NEAREST = "nearest"
+    SIZE = "size"
+    """Near and wide."""
+    INFORMATION_GAIN = "information_gain"
+    """From where much unknown ground could be seen, and near."""
+
+
 @dataclass(frozen=True)
 class FrontierWeights:
     """What makes a frontier worth going to."""
 
     least_size: int  # cells; smaller ones are cracks
     view: float  # m from the frontier from which it is seen well enough
-    worth: float  # cells of way that one cell of frontier is worth
+    worth: float  # cells of way that one cell of frontier is worth, where they are chosen by size
+    choice: FrontierChoice = FrontierChoice.SIZE
+    reach: float = 3.5  # m that the vehicle sees, where they are chosen by what could be seen
 
 
 def frontier_mask(costs: Costmap) -> Mask:
@@ -65,4 +80,14 @@ def frontiers(costs: Costmap, way: Floats, shunned: Mask, taste: FrontierWeights
         if np.isfinite(cost[best]):
             goal = (int(best[0]) + window[0].start, int(best[1]) + window[1].start)
             found.append(Frontier(goal, size, float(cost[best])))
-    return sorted(found, key=lambda f: (f.way - taste.worth * min(f.size, 60), f.goal))
+    taken = ~costs.free & ~costs.unknown
+    return sorted(found, key=lambda f: (_cost(f, costs, taken, taste), f.goal))
+
+
+def _cost(frontier: Frontier, costs: Costmap, taken: Mask, taste: FrontierWeights) -> float:
+    """What it is sorted by, best first."""
+    if taste.choice == FrontierChoice.INFORMATION_GAIN:
+        area = unknown_area(costs.unknown, taken, frontier.goal, taste.reach / costs.resolution) * costs.resolution**2
+        return -utility(area, frontier.way * costs.resolution)
+    worth = 0.0 if taste.choice == FrontierChoice.NEAREST else taste.worth
+    return frontier.way - worth * min(frontier.size, MOST_SIZE)

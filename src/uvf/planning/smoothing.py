@@ -53,3 +53,22 @@ def smoothed(points: Floats, costs: Costmap, least: float) -> Floats:
 def length(points: Floats) -> float:
     """Length [m] of a polyline (n, 2) [m]."""
     return float(np.hypot(*np.diff(points, axis=0).T).sum()) if len(points) > 1 else 0.0
+
+
+def first_part(points: Floats, way: float) -> Floats:
+    """The beginning of a polyline (n, 2) [m], ``way`` [m] long; its first point at least."""
+    if len(points) < 2:
+        return points
+    along = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+    if way <= 0.0 or way >= along[-1]:
+        return points[:1] if way <= 0.0 else points
+    end = [np.interp(way, along, points[:, k]) for k in (0, 1)]
+    return np.vstack((points[along < way], end))
+
+
+def from_place(points: Floats, place: tuple[float, float]) -> tuple[Floats, float]:
+    """The rest (m, 2) [m] of a polyline (n, 2) from a vehicle's place on, which comes first; and the length [m] of what is left out."""
+    if not len(points):
+        return points, 0.0
+    nearest = int(np.argmin(np.hypot(points[:, 0] - place[0], points[:, 1] - place[1])))
+    return np.vstack((place, points[nearest + 1 :])), length(points[: nearest + 1])

@@ -89,7 +89,7 @@ def test_never_comes_nearer_than_its_margin():
     assert bench.pose[0] + BODY.radius <= 0.6
 
 
-@pytest.mark.parametrize("planner", ["dwa", "trajectory_rollout", "regulated_pure_pursuit", "elastic_band", "vfh_plus"])
+@pytest.mark.parametrize("planner", ["dwa", "trajectory_rollout", "regulated_pure_pursuit", "elastic_band", "vfh_plus", "pid"])
 def test_every_local_planner_drives_and_stops(planner):
     bench = TrackerBench(local_planner=planner, goal_tolerance=0.15).step(150, ahead=5.0, moves=True)
     assert bench.pose[:2] == pytest.approx((3.0, 0.0), abs=0.2)

@@ -7,6 +7,7 @@ from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local.dwa import Dwa, DwaSettings
 from uvf.planning.local.elastic_band import ElasticBand, ElasticBandSettings
 from uvf.planning.local.mppi import Mppi, MppiSettings
+from uvf.planning.local.pid import PidFollower, PidGains
 from uvf.planning.local.planner import Limits, LocalPlanner
 from uvf.planning.local.regulated_pure_pursuit import RegulatedPurePursuit, RppSettings
 from uvf.planning.local.vfh_plus import VfhPlus, VfhSettings
@@ -19,6 +20,7 @@ LOCAL_PLANNERS: dict[str, LocalPlannerMaker] = {
     "trajectory_rollout": lambda limits, footprint, seed: Dwa(limits, footprint, DwaSettings(whole_horizon=True)),
     "regulated_pure_pursuit": lambda limits, footprint, seed: RegulatedPurePursuit(limits, footprint, RppSettings()),
     "elastic_band": lambda limits, footprint, seed: ElasticBand(limits, footprint, ElasticBandSettings()),
+    "pid": lambda limits, footprint, seed: PidFollower(limits, footprint, PidGains()),
     "vfh_plus": lambda limits, footprint, seed: VfhPlus(limits, footprint, VfhSettings()),
 }
 """Makers from the vehicle's limits and footprint and a seed, which counts where random numbers do; the first one is the default."""

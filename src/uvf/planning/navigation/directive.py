@@ -30,6 +30,8 @@ class Directive:
     """(n, 2) m, for FOLLOW."""
     heading: float | None = None  # rad, wanted at the path's end
     amount: float = 0.0  # rad, anticlockwise, for SPIN; m for BACK_UP, at least: it goes on to where there is room to turn
+    until: float | None = None
+    """m along the path that may be driven now; None: all of it."""
     clear_beyond: float | None = None
     """m: obstacles farther away than this are forgotten when the directive comes."""
 

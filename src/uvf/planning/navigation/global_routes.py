@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from uvf.maths.grids import distance_field
 from uvf.maths.se2 import Pose2, transform
 from uvf.planning.costmap.costmap import Frame
 from uvf.planning.costmap.hidden_obstacles import HiddenObstacles
@@ -35,6 +36,8 @@ class GlobalRoutes:
         self._map: tuple[Cells, Frame] | None = None
         """The map as it was drawn, and with what is to be kept out of."""
         self._walls: NDArray[np.bool_] = np.zeros((0, 0), dtype=np.bool_)
+        self._clearance: Floats | None = None
+        """(rows, columns) m to the nearest obstacle of the map; made when it is asked for."""
         self._trusts_sight = False
         self._known_free = KnownFree()
         self._keep_out: tuple[ZoneMask, Pose2] | None = None
@@ -50,7 +53,7 @@ class GlobalRoutes:
         """A new map, (rows, columns) of -1 unknown, 0..100 per cent; frame: resolution [m] and origin [m]."""
         self._drawn, self._shown = (cells, frame), None
         cells = self._kept_out(cells, frame)
-        self._map = cells, frame
+        self._map, self._clearance = (cells, frame), None
         self._walls = ndimage.binary_dilation(cells >= OCCUPIED, WALL)
 
     def look(self, here: tuple[float, float]) -> bool:
@@ -88,6 +91,19 @@ class GlobalRoutes:
     def has_room_to_turn(self, pose: Pose2) -> bool:
         """Whether no known obstacle is in the way of turning on the spot."""
         return self._layer.has_room((pose[0], pose[1]), self._planner.body.footprint.circumscribed_radius)
+
+    def map_clearance(self, path: Floats) -> Floats:
+        """(n,) m from the points of a path (n, 2) [m] to the nearest obstacle of the map, without what only the sensors see."""
+        out = np.full(len(path), np.inf)
+        if self._map is None or not self._map[0].size:
+            return out
+        cells, (resolution, (x, y)) = self._map
+        if self._clearance is None:
+            self._clearance = (distance_field(cells >= OCCUPIED) - 0.5) * resolution
+        rows, columns = np.floor((path[:, ::-1] - (y, x)) / resolution).astype(np.int64).T
+        inside = (rows >= 0) & (columns >= 0) & (rows < cells.shape[0]) & (columns < cells.shape[1])
+        out[inside] = self._clearance[rows[inside], columns[inside]]
+        return out
 
     def reset(self) -> None:
         """From now on what is seen free is free."""

@@ -1,0 +1,99 @@
+"""Who drives first through a passage that is too narrow for two: the others wait where they are not in the way.
+
+Each vehicle decides by itself from the same facts, where everybody is and the path that everybody follows; so all decide alike.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
+
+from uvf.planning.smoothing import resample
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+AHEAD = 5.0  # m of the way that is looked at
+EVEN = 0.5  # m of difference in the ways to the passage, up to which the names decide
+JOINED = 0.4  # m between two narrow places that count as one passage
+
+
+class Traveller(NamedTuple):
+    """A vehicle of the team with its path (n, 2) [m], from where it is to where it goes."""
+
+    name: str
+    path: Floats
+
+
+@dataclass(frozen=True)
+class PassageSizes:
+    """narrow: m from the path to an obstacle, below which two cannot pass each other; apart: m between two that do not touch."""
+
+    narrow: float
+    apart: float
+
+
+class Wait(NamedTuple):
+    """How far [m] along its path a vehicle may drive now, and for whom it waits."""
+
+    until: float
+    for_whom: str
+
+
+def give_way(own: Traveller, clearance: Floats, others: Sequence[Traveller], sizes: PassageSizes) -> Wait | None:
+    """Where a vehicle has to wait for another one; None where it may drive on.
+
+    clearance: (n,) m from the points of its own path to the nearest obstacle.
+    """
+    along = _along(own.path)
+    for passage in _passages(along, clearance < sizes.narrow):
+        for other in others:
+            if len(other.path) and _comes_first(own, other, (along, passage), sizes.apart):
+                return Wait(_waiting_place(own.path[: passage.start + 1], along, other.path, sizes.apart), other.name)
+    return None
+
+
+def _along(path: Floats) -> Floats:
+    """(n,) m of the way to each point."""
+    out: Floats = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(path, axis=0).T)))) if len(path) else np.zeros(0)
+    return out
+
+
+def _passages(along: Floats, narrow: Mask) -> list[slice]:
+    """The narrow stretches of a path, as slices of its points."""
+    found: list[slice] = []
+    for k in np.flatnonzero(narrow & (along <= AHEAD)).tolist():
+        if found and along[k] - along[found[-1].stop - 1] <= JOINED:
+            found[-1] = slice(found[-1].start, k + 1)
+        else:
+            found.append(slice(k, k + 1))
+    return found
+
+
+def _comes_first(own: Traveller, other: Traveller, where: tuple[Floats, slice], apart: float) -> bool:
+    """Whether the other one comes through the passage towards this vehicle, and is to come before it."""
+    along, passage = where
+    stretch, theirs = own.path[passage], resample(other.path)
+    near = cdist(stretch, theirs) < apart
+    if not near.any():
+        return False
+    shared = np.flatnonzero(near.any(axis=1))
+    enters, leaves = (int(np.argmin(cdist(stretch[k : k + 1], theirs)[0])) for k in (shared[0], shared[-1]))
+    inside = bool(np.hypot(*(stretch - theirs[0]).T).min() < apart)
+    if enters < leaves or (enters == leaves and not inside):
+        return False  # it drives ahead in the same direction, or only crosses
+    if passage.start == 0:
+        return inside and other.name < own.name
+    if inside:
+        return True
+    mine, their = float(along[passage.start]), float(_along(theirs)[leaves])
+    return their < mine - EVEN or (their <= mine + EVEN and other.name < own.name)
+
+
+def _waiting_place(before: Floats, along: Floats, theirs: Floats, apart: float) -> float:
+    """m along the path before the passage to the last place at which the other one can come by; 0 where there is none."""
+    free = np.flatnonzero((cdist(before, resample(theirs)) >= apart).all(axis=1))
+    return float(along[free[-1]]) if len(free) else 0.0

@@ -1,0 +1,90 @@
+"""Two that meet at a door: one of them waits where the other can come by, and both decide alike."""
+
+import numpy as np
+import pytest
+
+from uvf.planning.navigation.right_of_way import PassageSizes, Traveller, give_way
+from uvf.planning.smoothing import first_part, from_place, length, resample
+
+SIZES = PassageSizes(narrow=0.35, apart=0.35)
+
+
+def path(*corners):
+    return resample(np.array(corners, dtype=float))
+
+
+def clearance(points):
+    """A wall along x = 0 with a door of 0.5 m at y = 0."""
+    return np.where(np.abs(points[:, 0]) < 0.3, 0.25, np.maximum(np.abs(points[:, 0]) - 0.05, 0.25))
+
+
+def waits(own, *others):
+    return give_way(own, clearance(own.path), others, SIZES)
+
+
+def meeting(mine, theirs, names=("a", "b")):
+    """Who waits for whom when two come to the door from ``mine`` and ``theirs`` [m] before it."""
+    first = Traveller(names[0], path((-mine, 0.0), (3.0, 0.0)))
+    second = Traveller(names[1], path((theirs, 0.0), (-3.0, 0.0)))
+    return [None if wait is None else wait.for_whom for wait in (waits(first, second), waits(second, first))]
+
+
+@pytest.mark.parametrize(
+    ("mine", "theirs", "expected"),
+    [
+        (1.0, 2.5, [None, "a"]),
+        (2.5, 1.0, ["b", None]),
+        (1.5, 1.6, [None, "a"]),
+        (1.6, 1.5, [None, "a"]),
+        (0.1, 0.9, [None, "a"]),
+        (0.9, 0.1, ["b", None]),
+    ],
+    ids=["a is nearer", "b is nearer", "even", "even too", "a is in the door", "b is in the door"],
+)
+def test_exactly_one_waits_and_both_know_which(mine, theirs, expected):
+    assert meeting(mine, theirs) == expected
+
+
+def test_who_waits_does_so_off_the_way_of_the_other():
+    own = Traveller("b", path((3.0, 2.0), (1.0, 2.0), (1.0, 0.0), (-3.0, 0.0)))
+    other = Traveller("a", path((-1.0, 0.0), (3.0, 0.0)))
+    place = first_part(own.path, waits(own, other).until)[-1]
+    assert np.hypot(*(other.path - place).T).min() >= SIZES.apart - 0.02
+    assert place == pytest.approx((1.0, 0.4), abs=0.1)
+
+
+def test_who_stands_in_the_way_already_stays():
+    own = Traveller("b", path((2.0, 0.0), (-3.0, 0.0)))
+    assert waits(own, Traveller("a", path((-0.8, 0.0), (3.0, 0.0)))).until == 0.0
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        path((-0.6, 0.0), (3.0, 0.0)),
+        path((-1.0, 2.0), (-1.0, -2.0)),
+        path((2.0, 1.0), (3.0, 1.0)),
+        np.zeros((0, 2)),
+    ],
+    ids=["drives ahead", "crosses before the door", "stays on its side", "stands"],
+)
+def test_nobody_waits_for_who_does_not_come_through(other):
+    assert waits(Traveller("b", path((-1.5, 0.0), (3.0, 0.0))), Traveller("a", other)) is None
+
+
+def test_where_there_is_room_for_two_nobody_waits():
+    own = Traveller("b", path((-1.5, 0.0), (3.0, 0.0)))
+    assert give_way(own, np.full(len(own.path), 0.5), [Traveller("a", path((1.0, 0.0), (-3.0, 0.0)))], SIZES) is None
+
+
+def test_a_path_is_cut_where_it_is_said():
+    line = path((0.0, 0.0), (2.0, 0.0), (2.0, 1.0))
+    assert length(first_part(line, 2.55)) == pytest.approx(2.55)
+    assert first_part(line, 2.55)[-1] == pytest.approx((2.0, 0.55))
+    assert len(first_part(line, 0.0)) == 1
+    assert len(first_part(line, 99.0)) == len(line)
+    rest, passed = from_place(line, (1.02, 0.1))
+    assert passed == pytest.approx(1.0, abs=0.06)
+    assert rest[0] == pytest.approx((1.02, 0.1))
+    assert rest[-1] == pytest.approx((2.0, 1.0))
+    assert from_place(np.zeros((0, 2)), (0.0, 0.0))[1] == 0.0
