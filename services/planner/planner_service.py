@@ -287,11 +287,11 @@ class PlannerService(Service):
 
     def _aim_following(self, t: float, here: Pose2) -> None:
         """The place on the track of who is followed; near enough, or without hearing of them, the vehicle stands."""
-        leader, trail = self._job.leader, self._book.trail
+        leader, track = self._job.leader, self._book.track
         place = self._book.team.get(leader)
         if place is not None:
-            trail.add(place)
-        target = None if place is None else trail.target(compose(self._world_from_map, here)[:2])
+            track.add(place)
+        target = None if place is None else track.target(compose(self._world_from_map, here)[:2])
         if target is None:
             self._navigator.cancel(t)
             self._target, self._reason = None, f"nothing is heard of {leader}" if place is None else f"near enough to {leader}"
