@@ -6,7 +6,7 @@ from schemas.messages import FollowRequest, GoalRequest, NavStatus, Reply, Route
 from services.planner.goal_desk import GoalDesk
 from services.planner.jobs import Errand, Goal, not_now
 from uvf.maths.se2 import Pose2
-from uvf.planning.navigation.following import LeaderTrack
+from uvf.planning.navigation.following import TrackBehind
 
 Point = tuple[float, float]
 
@@ -26,7 +26,7 @@ class ErrandBook:
         """The route that it is, as it was asked for."""
         self.follow: FollowRequest | None = None
         """Who is followed, as it was asked for."""
-        self.track = LeaderTrack(USUAL_DISTANCE)
+        self.track = TrackBehind(USUAL_DISTANCE)
         """Of who is followed [m, world]."""
         self.team: dict[str, Point] = {}
         """Where the other vehicles are [m, world]."""
@@ -63,7 +63,7 @@ class ErrandBook:
     def _begin_following(self, wanted: FollowRequest) -> None:
         self.errand = Errand("follow", (Goal(self.team.get(wanted.vehicle, NOWHERE)),), leader=wanted.vehicle)
         self.route, self.follow = None, wanted
-        self.track = LeaderTrack(wanted.distance or USUAL_DISTANCE)
+        self.track = TrackBehind(wanted.distance or USUAL_DISTANCE)
 
     def go_on(self, reached: bool) -> None:
         """The place of the errand is reached, or given up: the next one is to be driven to, if there is one."""

@@ -12,7 +12,7 @@ SPACING = 0.05  # m between two places of the track that are kept
 LONGEST = 50.0  # m of track
 
 
-class LeaderTrack:
+class TrackBehind:
     """The way of the one that is followed, newest place last, and the place ``distance`` [m] of it behind."""
 
     def __init__(self, distance: float) -> None:
