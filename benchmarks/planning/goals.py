@@ -48,7 +48,7 @@ THERE = 0.3  # m
 APART = 0.15  # m beyond the rover's radius that a goal lies from obstacles
 CELL = 0.05  # m
 WORLDS = tuple(f"goals:{world}" for world in BEGUN)
-KINDS = ("sim_ground", "sim_camera", "slam", "planner", "autopilot")
+KINDS = ("sim_ground", "slam", "planner", "autopilot")
 
 
 @dataclass
@@ -90,7 +90,9 @@ class Errands:
     def __init__(self, site: Scenario, seed: int) -> None:
         self._site, self._rng = site, np.random.default_rng(seed)
         self.heard = Heard()
-        self._lockstep = Lockstep(catalogue.hosts(site, [catalogue.kind(kind) for kind in KINDS]))
+        camera = site.members[VEHICLE].file.sensors.camera
+        kinds = (*KINDS, "sim_camera") if camera is not None and camera.depth else KINDS  # other pictures are of no use here
+        self._lockstep = Lockstep(catalogue.hosts(site, [catalogue.kind(kind) for kind in kinds]))
         self.heard.listen(self._lockstep)
         self._lockstep.run(EXPLORED)
 

@@ -8,9 +8,7 @@ from services.planner.planned_vehicle import PlannedVehicle
 from services.planner.planner_service import PlannerService
 from services.planner.scan_placing import ScanPlacer
 from services.planner.tracker_service import FARTHEST, TrackerParams, TrackerService
-from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2
-from uvf.maths.se3 import Transform
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.urdf.model import load_urdf
 from uvf.models.urdf.outline import highest, plan_outline
@@ -25,7 +23,7 @@ from uvf.planning.local.mppi import Mppi, MppiSettings
 from uvf.planning.local.planner import Limits
 from uvf.planning.local.swept_stop import safe_share
 from uvf.runtime.contract.instances import ServiceInstance
-from uvf.sensors.fitted import sweeping_of
+from uvf.sensors.fitted import base_from_sensor, sweeping_of
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
@@ -47,7 +45,7 @@ def _hosts(member: MissionVehicle) -> list[ServiceInstance]:
     speed = min(tracker.speed, body.max_linear)
 
     def sensors_of() -> ObstacleSensors:
-        placer = ScanPlacer(Transform(from_euler(*lidar.mount.rpy), np.array(lidar.mount.xyz)), sweeping_of(lidar), FARTHEST)
+        placer = ScanPlacer(base_from_sensor(lidar.mount), sweeping_of(lidar), FARTHEST)
         return ObstacleSensors(placer, footprint, member.file.sensors, top)
 
     def planner_service() -> PlannerService:

@@ -1,6 +1,9 @@
 """What persons ask a ground vehicle for: one errand at a time, and the newest one that can be driven counts."""
 
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from math import isfinite, isinf, isnan, nan
+from typing import TypeVar
 
 from schemas.messages import FollowRequest, GoalRequest, NavStatus, Reply, RouteRequest, Vector3, VehicleStatus
 from services.planner.goal_desk import GoalDesk
@@ -9,6 +12,7 @@ from uvf.maths.se2 import Pose2
 from uvf.planning.navigation.following import TrackBehind
 
 Point = tuple[float, float]
+R = TypeVar("R", GoalRequest, RouteRequest, FollowRequest)
 
 KINDS = {RouteRequest.WAYPOINTS: "waypoints", RouteRequest.THROUGH: "through", RouteRequest.PATROL: "patrol"}
 USUAL_DISTANCE, MOST_DISTANCE = 1.0, 20.0  # m behind who is followed
@@ -33,32 +37,28 @@ class ErrandBook:
 
     def take_goals(self, here: Pose2, requests: list[GoalRequest], status: VehicleStatus | None) -> tuple[list[Reply], str]:
         """Replies, and what has been taken in words, "" for nothing; of several the last that can be driven to counts."""
-        replies = [_reply(not_now(status) or self._goal_refusal(here, request)) for request in requests]
-        taken = [request for request, reply in zip(requests, replies, strict=True) if reply.accepted]
-        if not taken:
+        replies, taken = _answered(requests, lambda request: not_now(status) or self._goal_refusal(here, request))
+        if taken is None:
             return replies, ""
-        last = taken[-1]
-        self.errand = Errand("goal", (Goal((last.position.x, last.position.y), None if isnan(last.yaw) else last.yaw),))
+        self.errand = Errand("goal", (Goal(_point(taken.position), None if isnan(taken.yaw) else taken.yaw),))
         self.route = self.follow = None
-        return replies, f"goal ({last.position.x:.1f}, {last.position.y:.1f})"
+        return replies, f"goal ({taken.position.x:.1f}, {taken.position.y:.1f})"
 
     def take_routes(self, here: Pose2, requests: list[RouteRequest], status: VehicleStatus | None) -> tuple[list[Reply], str]:
         """As ``take_goals``."""
-        replies = [_reply(not_now(status) or self._route_refusal(here, request)) for request in requests]
-        taken = [request for request, reply in zip(requests, replies, strict=True) if reply.accepted]
-        if not taken:
+        replies, taken = _answered(requests, lambda request: not_now(status) or self._route_refusal(here, request))
+        if taken is None:
             return replies, ""
-        self.errand, self.route, self.follow = _errand(taken[-1]), taken[-1], None
-        return replies, f"{KINDS[taken[-1].kind]} of {len(taken[-1].places)} places"
+        self.errand, self.route, self.follow = _errand(taken), taken, None
+        return replies, f"{self.errand.name} of {len(taken.places)} places"
 
     def take_follows(self, requests: list[FollowRequest], status: VehicleStatus | None) -> tuple[list[Reply], str]:
         """As ``take_goals``."""
-        replies = [_reply(not_now(status) or self._follow_refusal(request)) for request in requests]
-        taken = [request for request, reply in zip(requests, replies, strict=True) if reply.accepted]
-        if not taken:
+        replies, taken = _answered(requests, lambda request: not_now(status) or self._follow_refusal(request))
+        if taken is None:
             return replies, ""
-        self._begin_following(taken[-1])
-        return replies, f"follow {taken[-1].vehicle}"
+        self._begin_following(taken)
+        return replies, f"follow {taken.vehicle}"
 
     def _begin_following(self, wanted: FollowRequest) -> None:
         self.errand = Errand("follow", (Goal(self.team.get(wanted.vehicle, NOWHERE)),), leader=wanted.vehicle)
@@ -92,8 +92,7 @@ class ErrandBook:
         elif status.HasField("route") and status.route.places and status.route.kind in KINDS:
             errand = _errand(status.route)
             self.route = status.route
-            self.errand = Errand(errand.name, errand.goals, errand.via, min(status.route_at, len(errand.goals) - 1), 0, errand.repeats)
-
+            self.errand = replace(errand, at=min(status.route_at, len(errand.goals) - 1))
         elif status.HasField("follow") and MOST_DISTANCE >= status.follow.distance >= 0.0:
             self._begin_following(status.follow)
 
@@ -120,8 +119,11 @@ class ErrandBook:
         return ""
 
 
-def _reply(refusal: str) -> Reply:
-    return Reply(accepted=not refusal, reason=refusal)
+def _answered(requests: Sequence[R], refusal: Callable[[R], str]) -> tuple[list[Reply], R | None]:
+    """A reply to each, and the last that is not refused."""
+    reasons = [refusal(request) for request in requests]
+    taken = [request for request, reason in zip(requests, reasons, strict=True) if not reason]
+    return [Reply(accepted=not reason, reason=reason) for reason in reasons], taken[-1] if taken else None
 
 
 def _errand(route: RouteRequest) -> Errand:
@@ -133,5 +135,5 @@ def _errand(route: RouteRequest) -> Errand:
     return Errand(KINDS[route.kind], goals, repeats=route.kind == RouteRequest.PATROL)
 
 
-def _point(place: Vector3) -> tuple[float, float]:
+def _point(place: Vector3) -> Point:
     return place.x, place.y

@@ -10,7 +10,7 @@ from schemas.messages import CameraCalibration, CompressedImage, Contact, Range
 from services.planner.scan_placing import PlacedScan, ScanPlacer
 from uvf.maths.rotations import from_euler, rotate
 from uvf.maths.se3 import Transform, apply, compose
-from uvf.models.vehicle.sensors import Mount, Sensors
+from uvf.models.vehicle.sensors import Sensors
 from uvf.models.yaml_data import BadInput
 from uvf.planning.costmap.bumps import Bump, BumpSense
 from uvf.planning.costmap.footprint import RobotFootprint
@@ -19,6 +19,7 @@ from uvf.planning.costmap.range_sights import GroundSight, cone_sight, depth_sig
 from uvf.runtime.messages.convert import seconds
 from uvf.runtime.messages.depth_pictures import depth_rays
 from uvf.runtime.messages.sensor_frames import OPTICAL
+from uvf.sensors.fitted import base_from_sensor
 
 DEPTH_REACH = 3.0  # m, beyond which depths are too coarse to tell a step from the floor
 SONAR_REACH = 2.0  # m, beyond which a cone is too wide to say where
@@ -48,7 +49,7 @@ class ObstacleSensors:
         """What it has been touched by since the last step."""
         self._top = top
         camera = sensors.camera
-        self._base_from_optical = None if camera is None else compose(_transform(camera.mount), _transform(OPTICAL))
+        self._base_from_optical = None if camera is None else compose(base_from_sensor(camera.mount), base_from_sensor(OPTICAL))
         self._sonars = {sonar.frame: sonar for sonar in sensors.sonars}
         self._bumper = BumpSense(footprint, {b.name: (b.angle_min, b.angle_max) for b in sensors.bumpers})
         self._scan: PlacedScan | None = None
@@ -69,14 +70,14 @@ class ObstacleSensors:
         for contact in readings.contact:
             if not contact.touching:
                 self._bumper.feel_nothing(seconds(contact.timestamp))
-            elif (at := self.placer.newest) is not None:
-                bump = self._bumper.feel(seconds(contact.timestamp), at, self.placer.motion, list(contact.sectors))
+            elif (newest := self.placer.newest) is not None:
+                bump = self._bumper.feel(seconds(contact.timestamp), newest[1], self.placer.motion, list(contact.sectors))
                 self.bump = self.bump or bump
         waiting, self._waiting = self._waiting, deque(maxlen=WAITING_MOST)
         for t, sensor, sight in waiting:
             if (pose := self.placer.at(t)) is not None:
                 hidden.see(sensor, (t, age), pose, sight)
-            elif t > self.placer.newest_at - PATIENCE:
+            elif self.placer.newest is None or t > self.placer.newest[0] - PATIENCE:
                 self._waiting.append((t, sensor, sight))
 
     def _look(self, picture: CompressedImage, info: CameraCalibration, base_from_optical: Transform) -> None:
@@ -102,7 +103,3 @@ class ObstacleSensors:
         if self._scan is not None:
             sight = unexplained(sight, self._scan.points[self._scan.ranges > 0.0])
         self._waiting.append((seconds(reading.timestamp), sonar.frame, sight))
-
-
-def _transform(mount: Mount) -> Transform:
-    return Transform(from_euler(*mount.rpy), np.array(mount.xyz))

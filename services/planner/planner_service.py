@@ -3,9 +3,6 @@
 from dataclasses import replace
 from math import hypot, inf, isfinite, isinf
 
-import numpy as np
-from numpy.typing import NDArray
-
 from schemas.messages import (
     CancelRequest,
     Event,
@@ -28,7 +25,7 @@ from services.planner.planned_vehicle import PlannedVehicle
 from services.planner.planning_ground import PlanningGround
 from services.planner.team import exploring, places, travellers
 from uvf.maths.rotations import wrap
-from uvf.maths.se2 import Pose2, compose
+from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.exploration import OthersGoal
 from uvf.planning.frontiers import FrontierChoice, FrontierWeights
@@ -36,12 +33,11 @@ from uvf.planning.global_planner import NO_PLACE, GlobalPlanner, PlannedBody
 from uvf.planning.navigation.directive import Action, Directive
 from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings, Status
 from uvf.planning.navigation.progress import ProgressSettings
-from uvf.planning.navigation.right_of_way import PassageSizes, Traveller, give_way
+from uvf.planning.navigation.right_of_way import Traveller, give_way
 from uvf.planning.smoothing import from_place
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
 
-Floats = NDArray[np.float64]
 Point = tuple[float, float]
 
 FRONTIER_VIEW = 0.4  # m from a frontier, from where it is seen well enough
@@ -113,9 +109,8 @@ class PlannerService(Service):
         goal_replies, goal = self._book.take_goals(here, now.goal, now.status)
         route_replies, route = self._book.take_routes(here, now.route, now.status)
         follow_replies, follow = self._book.take_follows(now.follow, now.status)
-        self._tell_taken(t, follow, [request.source for request in now.follow])
-        self._tell_taken(t, goal, [request.source for request in now.goal])
-        self._tell_taken(t, route, [request.source for request in now.route])
+        for taken, asked in ((follow, now.follow), (goal, now.goal), (route, now.route)):
+            self._tell_taken(t, taken, [request.source for request in asked])
         place = compose(self._world_from_map, here)[:2]
         home = home_of(now.status) or self._world_from_map[:2]
         return_point = self._return_points.step(now.status, place, home, now.rally)
@@ -169,11 +164,6 @@ class PlannerService(Service):
         return PlannedBody(self._footprint.padded(params.margin), inflation, params.cost_travel_multiplier, offset, params.global_planner)
 
     @property
-    def _passage(self) -> PassageSizes:
-        apart = 2.0 * self._footprint.circumscribed_radius + ROOM
-        return PassageSizes(apart, apart)
-
-    @property
     def _taste(self) -> FrontierWeights:
         return FrontierWeights(
             self.params.min_frontier_size, FRONTIER_VIEW, self.params.frontier_gain, FrontierChoice(self.params.frontier_choice)
@@ -195,15 +185,14 @@ class PlannerService(Service):
     def _give_way(self, t: float, directive: Directive, now: interface.Inputs) -> Directive:
         """The directive as far as it may be followed now, for another vehicle comes through a passage that is too narrow for two."""
         here, waited_for, self._waits_for = self._ground.here, self._waits_for, ""
-        if directive.action != Action.FOLLOW or here is None or not now.team_path:
+        if directive.action != Action.FOLLOW or here is None:
+            return directive
+        others = travellers(now.team_path, self._book.team, inverse(self._world_from_map))
+        if not others:
             return directive
         own, passed = from_place(directive.path, here[:2])
-        wait = give_way(
-            Traveller(self._vehicle.name, own),
-            self._ground.routes.map_clearance(own),
-            travellers(now.team_path, self._book.team, self._desk.in_map),
-            self._passage,
-        )
+        apart = 2.0 * self._footprint.circumscribed_radius + ROOM
+        wait = give_way(Traveller(self._vehicle.name, own), self._ground.routes.map_clearance(own), others, apart)
         if wait is None:
             return directive
         self._waits_for = wait.for_whom

@@ -41,9 +41,6 @@ class ScanPlacer:
         """farthest: m, at which beams without return end."""
         self._base_from_lidar, self._sweeping, self.farthest = base_from_lidar, sweeping, farthest
         self._history = PoseHistory(HISTORY)
-        self.newest: Pose2 | None = None
-        self.newest_at = -np.inf
-        """Time [s] of the newest pose."""
         self.t = -np.inf
         """Time [s] of the last scan that was placed."""
 
@@ -55,20 +52,22 @@ class ScanPlacer:
     def move(self, t: float, pose: Pose2) -> None:
         """The vehicle was at ``pose`` at ``t`` [s]."""
         self._history.add(t, pose)
-        if t > self.newest_at:
-            self.newest, self.newest_at = pose, t
 
     def at(self, t: float) -> Pose2 | None:
         """Where the vehicle was at ``t`` [s]; None when that is too long ago, or not known yet."""
         return self._history.at(t)
 
     @property
+    def newest(self) -> tuple[float, Pose2] | None:
+        """Time [s] and pose of the newest that is known."""
+        return self._history.newest
+
+    @property
     def motion(self) -> tuple[float, float]:
         """Its lately driven speed [m/s], backwards negative, and turn rate [rad/s]; 0 where it is not known."""
-        before = self._history.at(self.newest_at - LATELY)
-        if self.newest is None or before is None:
+        if self.newest is None or (before := self._history.at(self.newest[0] - LATELY)) is None:
             return 0.0, 0.0
-        x, _, turned = compose(inverse(before), self.newest)
+        x, _, turned = compose(inverse(before), self.newest[1])
         return x / LATELY, turned / LATELY
 
     def place(self, scan: LaserScan) -> PlacedScan | None:

@@ -6,6 +6,7 @@ from math import isfinite
 import numpy as np
 
 from schemas.messages import NavStatus, PoseInFrame, PosesInFrame
+from uvf.maths.se2 import Pose2, transform
 from uvf.planning.exploration import OthersGoal
 from uvf.planning.navigation.right_of_way import Traveller
 from uvf.planning.smoothing import from_place
@@ -32,11 +33,12 @@ def exploring(own: str, said: dict[str, NavStatus], in_map: InMap) -> list[Other
     ]
 
 
-def travellers(paths: dict[str, PosesInFrame], team: dict[str, Point], in_map: InMap) -> list[Traveller]:
+def travellers(paths: dict[str, PosesInFrame], team: dict[str, Point], map_from_world: Pose2) -> list[Traveller]:
     """The paths of the others from where they are on, in the map frame."""
     found = []
     for name, message in sorted(paths.items()):
         if name in team and message.poses:
-            points = np.array([in_map((pose.position.x, pose.position.y)) for pose in message.poses[:MOST]])
-            found.append(Traveller(name, from_place(points[np.isfinite(points).all(axis=1)], in_map(team[name]))[0]))
+            points = np.array([(pose.position.x, pose.position.y) for pose in message.poses[:MOST]])
+            rest, _ = from_place(points[np.isfinite(points).all(axis=1)], team[name])
+            found.append(Traveller(name, transform(map_from_world, rest)))
     return found

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from uvf.planning.navigation.right_of_way import PassageSizes, Traveller, give_way
+from uvf.planning.navigation.right_of_way import Traveller, give_way
 from uvf.planning.smoothing import first_part, from_place, length, resample
 
-SIZES = PassageSizes(narrow=0.35, apart=0.35)
+APART = 0.35  # m
 
 
 def path(*corners):
@@ -19,7 +19,7 @@ def clearance(points):
 
 
 def waits(own, *others):
-    return give_way(own, clearance(own.path), others, SIZES)
+    return give_way(own, clearance(own.path), others, APART)
 
 
 def meeting(mine, theirs, names=("a", "b")):
@@ -49,7 +49,7 @@ def test_who_waits_does_so_off_the_way_of_the_other():
     own = Traveller("b", path((3.0, 2.0), (1.0, 2.0), (1.0, 0.0), (-3.0, 0.0)))
     other = Traveller("a", path((-1.0, 0.0), (3.0, 0.0)))
     place = first_part(own.path, waits(own, other).until)[-1]
-    assert np.hypot(*(other.path - place).T).min() >= SIZES.apart - 0.02
+    assert np.hypot(*(other.path - place).T).min() >= APART - 0.02
     assert place == pytest.approx((1.0, 0.4), abs=0.1)
 
 
@@ -74,7 +74,7 @@ def test_nobody_waits_for_who_does_not_come_through(other):
 
 def test_where_there_is_room_for_two_nobody_waits():
     own = Traveller("b", path((-1.5, 0.0), (3.0, 0.0)))
-    assert give_way(own, np.full(len(own.path), 0.5), [Traveller("a", path((1.0, 0.0), (-3.0, 0.0)))], SIZES) is None
+    assert give_way(own, np.full(len(own.path), 0.5), [Traveller("a", path((1.0, 0.0), (-3.0, 0.0)))], APART) is None
 
 
 def test_a_path_is_cut_where_it_is_said():

@@ -38,7 +38,8 @@ from services.gcs.state.process_book import ProcessBook
 from services.gcs.state.refusals import PageRefusals
 from services.gcs.state.session import SHOWN_AT_FIRST, BrowserSession
 from services.gcs.state.tracks import VehicleTrack
-from uvf.maths.rotations import from_euler, matrix
+from uvf.maths.rotations import matrix
+from uvf.maths.se3 import apply
 from uvf.models.mission.file import StartPose, Vehicle
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.file import load_vehicle
@@ -47,6 +48,7 @@ from uvf.runtime.messages.convert import array, scan_points, seconds, wxyz
 from uvf.runtime.messages.mapped_floor import MappedFloor
 from uvf.runtime.messages.spawned import SPAWNED_MOST, name_fault, object_fault
 from uvf.runtime.state.stop_all import StopStatus, name_of, told
+from uvf.sensors.fitted import base_from_sensor
 
 Floats = NDArray[np.float64]
 
@@ -377,8 +379,7 @@ def scan_in_world(vehicle: VehicleModel) -> Floats | None:
     if scan is None or place is None or lidar is None or not scan.ranges:
         return None
     flat = scan_points(scan)
-    in_lidar = np.column_stack((flat, np.zeros(len(flat))))
-    in_body = in_lidar @ matrix(from_euler(*lidar.mount.rpy)).T + np.array(lidar.mount.xyz)
+    in_body = apply(base_from_sensor(lidar.mount), np.column_stack((flat, np.zeros(len(flat)))))
     in_world: Floats = in_body @ matrix(place.wxyz).T + place.position
     return in_world
 

@@ -69,6 +69,11 @@ class PoseHistory:
         if len(self._times) > 2 * self._length:
             del self._times[: -self._length], self._poses[: -self._length]
 
+    @property
+    def newest(self) -> tuple[float, Pose2] | None:
+        """Time [s] and pose of the last one added; None before the first."""
+        return (self._times[-1], self._poses[-1]) if self._times else None
+
     def at(self, t: float) -> Pose2 | None:
         """Pose at ``t`` [s], interpolated, or None when that is before the first or after the last one known."""
         if not self._times or not self._times[0] <= t <= self._times[-1]:

@@ -58,10 +58,11 @@ class Explorer:
         mask = self._shunned_mask(t, costs)
         found = frontiers(costs, ways.cost, mask, self.taste)
         self.explored = self._estimate(costs, ways, sum(f.size for f in found))
-        if not found:
+        places = [_place(costs, frontier) for frontier in found]
+        if not places:
             self.goal = None
-        elif self.goal is None or not self.still_worth_it(t, costs) or self._gives_way(others, [_place(costs, f) for f in found]):
-            self.goal = next((p for p in (_place(costs, f) for f in found) if not _is_taken(p, others)), _place(costs, found[0]))
+        elif self.goal is None or not self.still_worth_it(t, costs) or self._gives_way(others, places):
+            self.goal = next((place for place in places if not _is_taken(place, others)), places[0])
         return self.goal
 
     def _gives_way(self, others: Sequence[OthersGoal], places: Sequence[Point]) -> bool:

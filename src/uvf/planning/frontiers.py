@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Cell = tuple[int, int]
 
+REACH = 3.5  # m that a vehicle is taken to see, where frontiers are chosen by what could be seen
 MOST_SIZE = 60  # cells of a frontier beyond which it is worth no more
 ALL_ROUND = np.ones((3, 3), dtype=int)
 
@@ -49,7 +50,6 @@ class FrontierWeights:
     view: float  # m from the frontier from which it is seen well enough
     worth: float  # cells of way that one cell of frontier is worth, where they are chosen by size
     choice: FrontierChoice = FrontierChoice.SIZE
-    reach: float = 3.5  # m that the vehicle sees, where they are chosen by what could be seen
 
 
 def frontier_mask(costs: Costmap) -> Mask:
@@ -80,14 +80,14 @@ def frontiers(costs: Costmap, way: Floats, shunned: Mask, taste: FrontierWeights
         if np.isfinite(cost[best]):
             goal = (int(best[0]) + window[0].start, int(best[1]) + window[1].start)
             found.append(Frontier(goal, size, float(cost[best])))
-    taken = ~costs.free & ~costs.unknown
-    return sorted(found, key=lambda f: (_cost(f, costs, taken, taste), f.goal))
-
-
-def _cost(frontier: Frontier, costs: Costmap, taken: Mask, taste: FrontierWeights) -> float:
-    """What it is sorted by, best first."""
     if taste.choice == FrontierChoice.INFORMATION_GAIN:
-        area = unknown_area(costs.unknown, taken, frontier.goal, taste.reach / costs.resolution) * costs.resolution**2
-        return -utility(area, frontier.way * costs.resolution)
+        taken = ~costs.free & ~costs.unknown
+        return sorted(found, key=lambda f: (-_gain(f, costs, taken), f.goal))
     worth = 0.0 if taste.choice == FrontierChoice.NEAREST else taste.worth
-    return frontier.way - worth * min(frontier.size, MOST_SIZE)
+    return sorted(found, key=lambda f: (f.way - worth * min(f.size, MOST_SIZE), f.goal))
+
+
+def _gain(frontier: Frontier, costs: Costmap, taken: Mask) -> float:
+    """Worth of what could be seen from there, less for a long way."""
+    area = unknown_area(costs.unknown, taken, frontier.goal, REACH / costs.resolution) * costs.resolution**2
+    return utility(area, frontier.way * costs.resolution)

@@ -14,11 +14,18 @@ FIDELITY, TENSION = 0.05, 0.45
 """Pull to the original point, and to the middle of the neighbours, per round."""
 
 
+def way_along(points: Floats) -> Floats:
+    """(n,) m of the way along a polyline (n, 2) [m] to each of its points."""
+    out = np.zeros(len(points))
+    np.cumsum(np.hypot(*np.diff(points, axis=0).T), out=out[1:])
+    return out
+
+
 def resample(points: Floats, spacing: float = SPACING) -> Floats:
     """Points (m, 2) [m] of the same polyline as (n, 2) at even distances of about ``spacing`` [m], ends kept."""
     if len(points) < 2:
         return points
-    lengths = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+    lengths = way_along(points)
     n = max(int(np.ceil(lengths[-1] / spacing)), 1)
     at = np.linspace(0.0, lengths[-1], n + 1)
     return np.column_stack((np.interp(at, lengths, points[:, 0]), np.interp(at, lengths, points[:, 1])))
@@ -59,7 +66,7 @@ def first_part(points: Floats, way: float) -> Floats:
     """The beginning of a polyline (n, 2) [m], ``way`` [m] long; its first point at least."""
     if len(points) < 2:
         return points
-    along = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+    along = way_along(points)
     if way <= 0.0 or way >= along[-1]:
         return points[:1] if way <= 0.0 else points
     end = [np.interp(way, along, points[:, k]) for k in (0, 1)]

@@ -5,7 +5,9 @@ from typing import Any
 import numpy as np
 
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.vehicle.sensors import GnssSensor, ImuSensor, Lidar, Sampled
+from uvf.maths.rotations import from_euler
+from uvf.maths.se3 import Transform
+from uvf.models.vehicle.sensors import GnssSensor, ImuSensor, Lidar, Mount, Sampled
 from uvf.sensors.errors import Errors
 from uvf.sensors.instruments import InertialUnit, Receiver
 from uvf.sensors.sampling import DelayLine, Dropout
@@ -51,6 +53,11 @@ def receiver(gnss: GnssSensor, tangent: LocalTangent, rng: np.random.Generator) 
     noise = np.array((gnss.horizontal_noise, gnss.horizontal_noise, gnss.vertical_noise))
     drift = np.array((gnss.horizontal_drift, gnss.horizontal_drift, gnss.vertical_drift))
     return Receiver(Errors(noise=noise, drift=drift, drift_time=gnss.drift_time), Errors(noise=gnss.speed_noise), tangent, rng)
+
+
+def base_from_sensor(mount: Mount) -> Transform:
+    """Where a sensor sits, as a transform."""
+    return Transform(from_euler(*mount.rpy), np.array(mount.xyz))
 
 
 def sweeping_of(lidar: Lidar) -> Sweeping:

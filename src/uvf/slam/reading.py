@@ -9,9 +9,6 @@ from uvf.maths.se2 import Pose2
 
 Floats = NDArray[np.float64]
 
-SCANT = 0.12
-"""Share of the beams below which little has come back."""
-
 
 @dataclass(frozen=True)
 class Beams:
@@ -53,8 +50,3 @@ class Reading:
         with np.errstate(invalid="ignore"):
             found: NDArray[np.bool_] = (self.ranges > max(self.beams.range_min, 0.0)) & (self.ranges < self.beams.range_max)
         return found
-
-    @property
-    def is_scant(self) -> bool:
-        """Whether so little came back that it may all be things that move."""
-        return float(self.returned.mean()) < SCANT if len(self.ranges) else True

@@ -63,6 +63,11 @@ class Bench:
         return self
 
     @property
+    def path(self):
+        """(n, 2) m, map."""
+        return np.array([(p.position.y - START[1], START[0] - p.position.x) for p in self.said["path"].poses])
+
+    @property
     def state(self):
         return self.said["nav_status"].state
 

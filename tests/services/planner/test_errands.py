@@ -60,20 +60,16 @@ def test_a_patrol_can_be_cancelled_while_it_stands_at_a_place():
     assert bench.said["nav_status"].job == "idle"
 
 
-def path_in_map(bench):
-    return np.array([(p.position.y - 20.0, 10.0 - p.position.x) for p in bench.said["path"].poses])
-
-
 def test_places_to_pass_lie_on_the_path_and_are_struck_off():
     bench = Bench().step(route=[asked(RouteRequest.THROUGH, *PLACES)])
-    path = path_in_map(bench)
+    path = bench.path
     for place in PLACES:
         assert np.hypot(*(path - place).T).min() < 0.05
     bench.here = PLACES[0]
     bench.step()
     bench.here = (2.6, 0.8)
     bench.step(5)
-    path = path_in_map(bench)
+    path = bench.path
     assert np.hypot(*(path - PLACES[0]).T).min() > 0.3
     assert np.hypot(*(path - PLACES[1]).T).min() < 0.05
     assert bench.state == NavStatus.DRIVING
@@ -131,7 +127,7 @@ def test_it_follows_on_the_track_of_the_leader_and_stands_when_near():
     lead(bench, *((2.2 + 0.1 * k, 1.0) for k in range(11)), *((3.2, 1.0 + 0.1 * k) for k in range(1, 13)))
     goal = bench.said["nav_status"].goal
     assert (goal.x, goal.y) == pytest.approx(world(3.2, 2.2 - 0.8), abs=0.35)
-    assert path_in_map(bench)[-1] == pytest.approx((3.2, 1.4), abs=0.35)
+    assert bench.path[-1] == pytest.approx((3.2, 1.4), abs=0.35)
     bench.here = (3.2, 1.5)
     lead(bench, (3.2, 2.2), (3.2, 2.2))
     assert bench.said["nav_status"].reason == "near enough to leader"

@@ -36,9 +36,10 @@ def depth_sight(eye: Point, points: Floats, top: float) -> GroundSight:
     ranges, sectors = np.hypot(*away.T), np.floor(np.arctan2(away[:, 1], away[:, 0]) / BEARING).astype(np.int64)
     order = np.lexsort((ranges, sectors))
     ranges, sectors, floor = ranges[order], sectors[order], points[order, 2] <= FLOOR
-    beams = [_of_sector(ranges[part], floor[part]) for part in _parts(sectors)]
+    parts = _parts(sectors)
+    beams = [_of_sector(ranges[part], floor[part]) for part in parts]
     first, last, hits = (np.array(column) for column in zip(*beams, strict=True)) if beams else (np.zeros(0),) * 3
-    middles = (sectors[[part.start for part in _parts(sectors)]] + 0.5) * BEARING
+    middles = (sectors[[part.start for part in parts]] + 0.5) * BEARING
     told = last > 0.0
     rays = np.column_stack((np.cos(middles), np.sin(middles)))[told]
     return GroundSight(eye, np.array(eye) + first[told, None] * rays, np.array(eye) + last[told, None] * rays, hits[told].astype(np.bool_))

@@ -18,6 +18,7 @@ from uvf.planning.flight.airspace import Airspace, Space, space_of
 from uvf.planning.flight.clearance import ClearanceMargins, Configuration, are_clear
 from uvf.planning.flight.loiter import LoiterPattern, exits, plan_loiter
 from uvf.planning.flight.planner import DubinsAirplanePath, FlightLimits
+from uvf.planning.smoothing import way_along
 
 Floats = NDArray[np.float64]
 
@@ -85,7 +86,7 @@ def flight_items(path: DubinsAirplanePath, airspace: Airspace, limits: FlightLim
 
 def _levelled(nodes: Floats, planned: float) -> list[Configuration]:
     """Nodes (n, 4) with heights between those of an even climb (``planned`` 0) and their own (1)."""
-    along = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(nodes[:, :2], axis=0).T))))
+    along = way_along(nodes[:, :2])
     even = nodes[0, 2] + (nodes[-1, 2] - nodes[0, 2]) * along / max(along[-1], 1e-9)
     heights = even + planned * (nodes[:, 2] - even)
     return [(x, y, height, course) for (x, y, _, course), height in zip(nodes.tolist(), heights.tolist(), strict=True)]

@@ -5,6 +5,8 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.planning.smoothing import way_along
+
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
 
@@ -39,5 +41,5 @@ class TrackBehind:
             return None
         way = np.array((here, *self._places))
         back = way[::-1]
-        behind = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(back, axis=0).T))))
+        behind = way_along(back)
         return float(np.interp(self.distance, behind, back[:, 0])), float(np.interp(self.distance, behind, back[:, 1]))

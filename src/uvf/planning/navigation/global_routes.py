@@ -13,7 +13,7 @@ from uvf.planning.costmap.obstacle_layer import ObstacleLayer
 from uvf.planning.costmap.zone_mask import KEPT_OUT, ZoneMask
 from uvf.planning.global_planner import GlobalPlanner
 from uvf.planning.navigation.navigator import NavigationGoal, Route
-from uvf.planning.navigation.routes import KnownFree, one_after_the_other, still_free
+from uvf.planning.navigation.routes import KnownFree, cells_of, one_after_the_other, still_free
 
 Floats = NDArray[np.float64]
 Cells = NDArray[np.int8]
@@ -61,9 +61,9 @@ class GlobalRoutes:
         if self._map is None:
             return False
         cells, frame = self._map
-        lethal = np.concatenate((self._cells(self._centres(LETHAL), frame), self._cells(self._hidden.touched, frame)))
+        lethal = cells_of(np.concatenate((self._centres(LETHAL), self._hidden.touched)), frame, cells.shape)[0]
         lethal = lethal[~self._walls[lethal[:, 0], lethal[:, 1]]]  # a wall of the map is where the map has it
-        free = self._cells(self._centres(FREE_SPACE), frame) if self._trusts_sight else lethal[:0]
+        free = cells_of(self._centres(FREE_SPACE), frame, cells.shape)[0] if self._trusts_sight else lethal[:0]
         shown = lethal.tobytes() + free.tobytes()
         changed = shown != self._shown
         if changed:
@@ -97,12 +97,11 @@ class GlobalRoutes:
         out = np.full(len(path), np.inf)
         if self._map is None or not self._map[0].size:
             return out
-        cells, (resolution, (x, y)) = self._map
+        cells, frame = self._map
         if self._clearance is None:
-            self._clearance = (distance_field(cells >= OCCUPIED) - 0.5) * resolution
-        rows, columns = np.floor((path[:, ::-1] - (y, x)) / resolution).astype(np.int64).T
-        inside = (rows >= 0) & (columns >= 0) & (rows < cells.shape[0]) & (columns < cells.shape[1])
-        out[inside] = self._clearance[rows[inside], columns[inside]]
+            self._clearance = (distance_field(cells >= OCCUPIED) - 0.5) * frame[0]
+        at, inside = cells_of(path, frame, cells.shape)
+        out[inside] = self._clearance[at[:, 0], at[:, 1]]
         return out
 
     def reset(self) -> None:
@@ -123,10 +122,3 @@ class GlobalRoutes:
         """(n, 2) m centres of the layer's cells of a value."""
         out: Floats = (np.argwhere(self._layer.cells == value)[:, ::-1] + 0.5) * self._layer.resolution + np.array(self._layer.origin)
         return out
-
-    def _cells(self, points: Floats, frame: Frame) -> NDArray[np.int64]:
-        """(n, 2) rows and columns of the map, which has a frame, in which points (k, 2) [m] lie; those off the map are left out."""
-        resolution, (x0, y0) = frame
-        rows, columns = np.floor((points[:, ::-1] - (y0, x0)) / resolution).astype(np.int64).T
-        inside = (rows >= 0) & (columns >= 0) & (rows < self._walls.shape[0]) & (columns < self._walls.shape[1])
-        return np.column_stack((rows[inside], columns[inside]))

@@ -4,14 +4,13 @@ Each vehicle decides by itself from the same facts, where everybody is and the p
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from uvf.planning.smoothing import resample
+from uvf.planning.smoothing import resample, way_along
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -28,14 +27,6 @@ class Traveller(NamedTuple):
     path: Floats
 
 
-@dataclass(frozen=True)
-class PassageSizes:
-    """narrow: m from the path to an obstacle, below which two cannot pass each other; apart: m between two that do not touch."""
-
-    narrow: float
-    apart: float
-
-
 class Wait(NamedTuple):
     """How far [m] along its path a vehicle may drive now, and for whom it waits."""
 
@@ -43,23 +34,19 @@ class Wait(NamedTuple):
     for_whom: str
 
 
-def give_way(own: Traveller, clearance: Floats, others: Sequence[Traveller], sizes: PassageSizes) -> Wait | None:
+def give_way(own: Traveller, clearance: Floats, others: Sequence[Traveller], apart: float) -> Wait | None:
     """Where a vehicle has to wait for another one; None where it may drive on.
 
-    clearance: (n,) m from the points of its own path to the nearest obstacle.
+    clearance: (n,) m from the points of its own path to the nearest obstacle; apart: m between the middles of two that do not touch,
+    and so what two need to either side of the path to pass each other.
     """
-    along = _along(own.path)
-    for passage in _passages(along, clearance < sizes.narrow):
-        for other in others:
-            if len(other.path) and _comes_first(own, other, (along, passage), sizes.apart):
-                return Wait(_waiting_place(own.path[: passage.start + 1], along, other.path, sizes.apart), other.name)
+    along = way_along(own.path)
+    driving = [Traveller(other.name, resample(other.path)) for other in others if len(other.path)]
+    for passage in _passages(along, clearance < apart):
+        for other in driving:
+            if _comes_first(own, other, (along, passage), apart):
+                return Wait(_waiting_place(own.path[: passage.start + 1], along, other.path, apart), other.name)
     return None
-
-
-def _along(path: Floats) -> Floats:
-    """(n,) m of the way to each point."""
-    out: Floats = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(path, axis=0).T)))) if len(path) else np.zeros(0)
-    return out
 
 
 def _passages(along: Floats, narrow: Mask) -> list[slice]:
@@ -76,7 +63,7 @@ def _passages(along: Floats, narrow: Mask) -> list[slice]:
 def _comes_first(own: Traveller, other: Traveller, where: tuple[Floats, slice], apart: float) -> bool:
     """Whether the other one comes through the passage towards this vehicle, and is to come before it."""
     along, passage = where
-    stretch, theirs = own.path[passage], resample(other.path)
+    stretch, theirs = own.path[passage], other.path
     near = cdist(stretch, theirs) < apart
     if not near.any():
         return False
@@ -89,11 +76,11 @@ def _comes_first(own: Traveller, other: Traveller, where: tuple[Floats, slice], 
         return inside and other.name < own.name
     if inside:
         return True
-    mine, their = float(along[passage.start]), float(_along(theirs)[leaves])
+    mine, their = float(along[passage.start]), float(way_along(theirs)[leaves])
     return their < mine - EVEN or (their <= mine + EVEN and other.name < own.name)
 
 
 def _waiting_place(before: Floats, along: Floats, theirs: Floats, apart: float) -> float:
     """m along the path before the passage to the last place at which the other one can come by; 0 where there is none."""
-    free = np.flatnonzero((cdist(before, resample(theirs)) >= apart).all(axis=1))
+    free = np.flatnonzero((cdist(before, theirs) >= apart).all(axis=1))
     return float(along[free[-1]]) if len(free) else 0.0

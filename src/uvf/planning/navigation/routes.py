@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se2 import Pose2
-from uvf.planning.costmap.costmap import Cell, Costmap
+from uvf.planning.costmap.costmap import Cell, Costmap, Frame
 from uvf.planning.costmap.inflation import INSCRIBED, NO_INFORMATION
 from uvf.planning.local.controller import LocalController
 from uvf.planning.navigation.failures import Failure
@@ -72,7 +72,7 @@ class KnownFree:
 
     def judged(self, route: Route, costs: Costmap) -> Route:
         """The route; a failure to find one becomes ``Failure.BLOCKED`` where something has come."""
-        cells, inside = _cells(costs, self._points)
+        cells, inside = cells_of(self._points, costs.frame, costs.values.shape)
         values = costs.values[cells[:, 0], cells[:, 1]]
         taken = self._points[inside][(values >= INSCRIBED) & (values < NO_INFORMATION)]
         if route.path is not None:
@@ -84,7 +84,7 @@ class KnownFree:
 
 def _well_known(costs: Costmap, path: Floats) -> Floats:
     """The points of a path (n, 2) [m] within whose inscribed radius all ground is known: no wall comes into view there later."""
-    cells, inside = _cells(costs, path)
+    cells, inside = cells_of(path, costs.frame, costs.values.shape)
     reach = int(np.ceil(costs.footprint.inscribed_radius / costs.resolution))
     around = np.arange(-reach, reach + 1)
     rows, columns = np.array(costs.values.shape)[:, None, None, None] - 1
@@ -118,15 +118,16 @@ def route_over(costs: Costmap, factors: Floats, here: Point, there: Point) -> Ro
 
 def still_free(costs: Costmap, path: Floats) -> bool:
     """Whether the vehicle's centre may be everywhere on a path (n, 2) [m], but for its very beginning, where the vehicle stands."""
-    cells, _ = _cells(costs, path[np.hypot(*(path - path[0]).T) > UNDERFOOT] if len(path) else path)
+    cells, _ = cells_of(path[np.hypot(*(path - path[0]).T) > UNDERFOOT] if len(path) else path, costs.frame, costs.values.shape)
     values = costs.values[cells[:, 0], cells[:, 1]]
     return not ((values >= INSCRIBED) & (values < NO_INFORMATION)).any()
 
 
-def _cells(costs: Costmap, path: Floats) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    """Rows and columns (k, 2) of the points of a path (n, 2) [m] that lie on the costmap, and which ones do (n,)."""
-    cells = np.floor((path[:, ::-1] - np.array(costs.origin)[::-1]) / costs.resolution).astype(np.int64)
-    inside = ((cells >= 0) & (cells < costs.values.shape)).all(axis=1)
+def cells_of(points: Floats, frame: Frame, shape: tuple[int, ...]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """Rows and columns (k, 2) of the points (n, 2) [m] that lie on a grid of a frame and shape, and which ones do (n,)."""
+    resolution, origin = frame
+    cells = np.floor((points[:, ::-1] - np.array(origin)[::-1]) / resolution).astype(np.int64)
+    inside = ((cells >= 0) & (cells < shape)).all(axis=1)
     return cells[inside], inside
 
 

@@ -22,6 +22,8 @@ NEAR, FAR, SPREAD = 0.12, 2.0, 0.06
 ROUGH, CURVED = 0.004, 0.03
 """m^2 and share of the length's variance that a straight surface may have across it."""
 
+SCANT = 0.12
+"""Share of the beams below which little has come back."""
 UNSURE = 0.3  # weight of a point whose normal is not known
 
 
@@ -36,7 +38,7 @@ class Cloud:
     normals: Floats
     weights: Floats
     is_scant: bool = False
-    """Whether it is too little to go by, as ``Reading.is_scant``."""
+    """Whether so little of the sweep came back that it may all be things that move."""
 
     @property
     def flat(self) -> NDArray[np.bool_]:
@@ -122,7 +124,8 @@ def cloud_of(reading: Reading) -> Cloud:
     stride = max(1, -(-len(returned) // ENOUGH))
     kept = np.flatnonzero(returned[::stride]) * stride
     normals = _normals(points, returned, (beams.origin, window_of(beams.bearings)), kept)
-    return Cloud(points[kept], normals, np.where((normals != 0.0).any(axis=1), 1.0, UNSURE), reading.is_scant)
+    weights = np.where((normals != 0.0).any(axis=1), 1.0, UNSURE)
+    return Cloud(points[kept], normals, weights, not returned.any() or bool(returned.mean() < SCANT))
 
 
 def window_of(bearings: Floats) -> int:
