@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
+from uvf.planning.moving.circles import fit_circle
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -20,8 +21,13 @@ SMALLEST, LARGEST = 0.05, 1.0
 CURVED = 0.15
 """Part of the chord by which an arc must bulge for its radius to be read off it; else half the chord is taken."""
 COVERED = 0.3  # m by which a neighbouring beam must end nearer to hide an edge
-X, Y, RADIUS, LABEL, HIDDEN = range(5)
-"""Columns of a disc; hidden: 1 where something nearer covers an edge of it, or the sensor's view ends there."""
+ROUND_POINTS, SMALLEST_ROUND = 8, 0.15  # least, m
+ROUGH, VAGUE = 0.015, 0.05
+"""m, root mean square of the points' distances from a circle, and 1 sigma of its middle, up to which a thing is round."""
+COLUMNS = 6
+X, Y, RADIUS, LABEL, HIDDEN, SPREAD = range(COLUMNS)
+"""Columns of a disc; hidden: 1 where something nearer covers an edge of it, or the sensor's view ends there; spread: 1 sigma [m] of the
+middle of what is round, which counts as hidden nowhere, for a part of it tells its middle; 0 where it is not known to be round."""
 
 
 @compiled
@@ -71,13 +77,14 @@ def _falls_before(ranges: Floats, labels: Indices, peak: int, label: int, highes
 
 @compiled
 def discs_of(points: Floats, ranges: Floats, labels: Indices, eye: tuple[float, float]) -> Floats:
-    """(k, 5) discs (columns above) of the things that at least three beams see, by their labels.
+    """(k, COLUMNS) discs (columns above) of the things that at least three beams see, by their labels.
 
     eye: (x, y) [m] of the sensor; of a disc it sees the near side. Radius and centre follow from the arc's chord and bulge where it
     bulges enough, else the chord counts as the diameter. Wider ones than ``LARGEST`` come out with that radius; ``chords_of`` tells them.
     """
     n = labels.size
-    out = np.empty((n // LEAST_POINTS + 1, 5))
+    out = np.empty((n // LEAST_POINTS + 1, COLUMNS))
+    own = np.zeros(n, dtype=np.bool_)
     count, first = 0, 0
     while first < n:
         label = labels[first]
@@ -94,6 +101,10 @@ def discs_of(points: Floats, ranges: Floats, labels: Indices, eye: tuple[float, 
             _fit(points, labels, (first, end), eye, out[count])
             out[count, LABEL] = label
             out[count, HIDDEN] = _is_hidden(ranges, first, -1) or _is_hidden(ranges, end, 1)
+            out[count, SPREAD] = 0.0
+            if total >= ROUND_POINTS:
+                own[first : end + 1] = labels[first : end + 1] == label
+                _round(points[first : end + 1], own[first : end + 1], out[count])
             count += 1
         first = end + 1
     return out[:count].copy()
@@ -129,6 +140,14 @@ def _fit(points: Floats, labels: Indices, ends: tuple[int, int], eye: tuple[floa
         radius = (0.25 * chord * chord + bulge * bulge) / (2.0 * bulge)
     radius = min(max(radius, SMALLEST), LARGEST)
     out[X], out[Y], out[RADIUS] = half_x + (radius - bulge) * ahead_x, half_y + (radius - bulge) * ahead_y, radius
+
+
+@compiled
+def _round(points: Floats, own: NDArray[np.bool_], out: Floats) -> None:
+    """Puts the circle through a thing's own points in the place of its disc, if it is round."""
+    x, y, radius, rough, spread, _ = fit_circle(points, own, (out[X], out[Y], out[RADIUS]), True)
+    if rough <= ROUGH and spread <= VAGUE and SMALLEST_ROUND <= radius <= LARGEST:
+        out[X], out[Y], out[RADIUS], out[HIDDEN], out[SPREAD] = x, y, radius, 0.0, spread
 
 
 @compiled
