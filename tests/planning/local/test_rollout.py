@@ -102,6 +102,26 @@ def test_features_are_those_of_their_definitions():
     assert same.mean() >= 0.95, found[~same] - wanted[~same]  # a pose on a cell's very border may fall to either side
 
 
+def test_a_vehicle_that_skids_slides_out_of_its_curve():
+    """On a circle the way across is the sideslip times speed, turn rate and time; the way that it was driven along stays the same."""
+    state = State(0.0, 0.0, 0.0, 1.0, 1.0)
+    now = situation(ground(), state, PATH)
+    turn = np.tile(np.float32((1.0, 1.0)), (1, STEPS, 1))
+    t = np.linspace(0.0, STEPS * DT, 20001)
+    ahead, aside = 1.0, -0.1 * 1.0 * 1.0
+    x = np.trapezoid(ahead * np.cos(t) - aside * np.sin(t), t)
+    y = np.trapezoid(ahead * np.sin(t) + aside * np.cos(t), t)
+    disc = np.array(((x, y, 0.0, 0.0, 1e-3),))  # where the vehicle ends
+    others = OTHERS._replace(obstacles=disc, growth=0.0, sides=np.array([(np.cos(a), np.sin(a), 0.02) for a in np.arange(0.0, 6.28, 0.1)]))
+    touched = []
+    for sideslip in (0.1, 0.0):
+        out = np.empty((1, FEATURES), dtype=np.float32)
+        roll_out(now.grids, now.state, turn, (DT, LIMITS._replace(sideslip=sideslip)), others, out)
+        touched.append(out[0, rollout.COLLIDED])
+    assert 0.0 < touched[0] < 0.1
+    assert touched[1] == 0.0
+
+
 def test_reversing_over_unseen_ground_counts_more():
     state = State(0.0, 0.0, 0.0, -0.5, 0.0)
     now = situation(ground(), state, PATH)

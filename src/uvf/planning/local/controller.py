@@ -255,4 +255,6 @@ class LocalController:
         v = min(max(self._last[0], velocity[0] - dv), velocity[0] + dv)
         w = min(max(self._last[1], velocity[1] - dw), velocity[1] + dw)
         middle = pose[2] + w * d / 2
-        return State(pose[0] + v * d * cos(middle), pose[1] + v * d * sin(middle), pose[2] + w * d, v, w)
+        ahead, aside = v * d, -limits.sideslip * v * w * d
+        x, y = ahead * cos(middle) - aside * sin(middle), ahead * sin(middle) + aside * cos(middle)
+        return State(pose[0] + x, pose[1] + y, pose[2] + w * d, v, w)

@@ -23,6 +23,7 @@ class Limits(NamedTuple):
     acceleration: float  # m/s^2
     angular_acceleration: float  # rad/s^2
     lateral_acceleration: float  # m/s^2, of speed times turn rate, beyond which the wheels slide or the vehicle tips
+    sideslip: float = 0.0  # s, of speed times turn rate: velocity at which wheels that skid in a turn slide out of it
 
 
 class State(NamedTuple):

@@ -110,8 +110,9 @@ def _driven(motion: Motion, command: Floats32, dt: float, limits: Limits) -> Mot
     turn += min(max(wanted - turn, -limits.angular_acceleration * dt), limits.angular_acceleration * dt)
     half = 0.5 * turn * dt
     cosine, sine = _turned(cosine, sine, half)
-    x += speed * dt * cosine
-    y += speed * dt * sine
+    ahead, aside = speed * dt, -limits.sideslip * speed * turn * dt
+    x += ahead * cosine - aside * sine
+    y += ahead * sine + aside * cosine
     cosine, sine = _turned(cosine, sine, half)
     return x, y, yaw + turn * dt, speed, turn, cosine, sine
 
