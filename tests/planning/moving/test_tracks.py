@@ -82,6 +82,24 @@ def test_the_mask_is_of_the_beams_that_see_it():
             assert mask[on_it].all()
 
 
+def braking(t):
+    """Comes at 2 m/s, brakes by 2 m/s^2 to a stand at 2 s and goes back as it came."""
+    return np.array(((5.0 - 2.0 * t + t * t, -1.0, 0.5),))
+
+
+def test_what_turns_back_moves_all_the_time():
+    for t, tracker, _, _, _ in follow(braking, 3.0, walls=ROOM):
+        assert t < 0.3 or len(tracker.moving()) == 1, f"lost at {t} s"
+
+
+def test_a_round_thing_that_comes_out_of_a_wall_is_known_before_it_has_left_it():
+    """Its middle is in the wall, at x = 8 m, until 0.5 s, and it is off the wall from 1.2 s on."""
+    discs = straight(8.4, 0.5, -0.8, 0.3)
+    known = [t for t, tracker, _, _, _ in follow(discs, 2.0, walls=ROOM) if len(tracker.moving())]
+    assert known[0] < 0.85
+    assert np.diff(known).max() < 0.06 and known[-1] > 1.9
+
+
 def test_its_velocity_follows_a_turn():
     """Half a second after a corner the new velocity is the one that counts."""
 

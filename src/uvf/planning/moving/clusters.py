@@ -65,6 +65,26 @@ def labels_of(points: Floats, ranges: Floats) -> Indices:
 
 
 @compiled
+def part_new(labels: Indices, wide: NDArray[np.bool_], entered: NDArray[np.bool_]) -> None:
+    """Parts from each wide thing (by label) what stands on ground that was free before: it has come out of a wall, or along it.
+
+    labels (n,) are changed: each run of beams that see such ground (entered (n,)) gets a number of its own, after all others.
+    """
+    following, last = wide.size, -1
+    for i in range(labels.size):
+        label = labels[i]
+        if label < 0:
+            continue
+        if wide[label] and entered[i]:
+            if label != last:
+                following += 1
+            labels[i] = following - 1
+            last = label
+        else:
+            last = -1
+
+
+@compiled
 def _falls_before(ranges: Floats, labels: Indices, peak: int, label: int, highest: float) -> bool:
     """Whether the same thing has a beam before ``peak`` that is nearer by a dent."""
     k = peak - 1

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from uvf.planning.moving.circles import find_circle
-from uvf.planning.moving.clusters import HIDDEN, LABEL, RADIUS, ROUGH, ROUND_POINTS, SPREAD, VAGUE, discs_of, labels_of, widths_of
+from uvf.planning.moving.clusters import HIDDEN, LABEL, RADIUS, ROUGH, ROUND_POINTS, SPREAD, VAGUE, discs_of, labels_of, part_new, widths_of
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -36,6 +36,7 @@ class TrackSettings:
     certainty: float = 2.0  # times its own standard deviation that a speed must have
     least_way: float = 0.1  # m that a thing must have gone until it is believed to move
     sure_way: float = 0.3  # m that a thing must have gone to be believed though it is slow
+    rest: float = 0.5  # s for which something round that moved must be slower to stand
     least_hits: int = 3  # scans that show it whole until it is believed
     round_speed: float = 0.4  # m/s from which on what is round is believed to move by its middle alone
     round_certainty: float = 4.0  # times its own standard deviation that this speed must have
@@ -73,6 +74,9 @@ class Track:
     hidden: float = 0.0  # s, out of view
     moves: bool = False
     """Whether it was found to move when it was last seen."""
+    moved: bool = False
+    """Whether it ever was."""
+    stood: float = 0.0  # s, since when it moves and is too slow for it
 
     def judge(self, settings: TrackSettings) -> None:
         """Finds whether it moves: its speed is large enough, and has brought it somewhere; at first it must be sure enough too.
@@ -80,17 +84,26 @@ class Track:
         The middle of what comes into view bit by bit moves as well; but it does not come onto ground that was free.
         """
         speed = float(np.hypot(self.state[2], self.state[3]))
-        if self.whole < settings.least_hits or speed < settings.least_speed:
+        is_round = self.round >= settings.least_hits
+        may_rest = self.moves and is_round and self.stood <= settings.rest
+        if self.whole < settings.least_hits or (speed < settings.least_speed and not may_rest):
             self.moves = False
-        elif not self.moves and (self.entered >= SURE or self.round >= settings.least_hits):
+        elif not self.moves and (self.entered >= SURE or is_round):
             along = self.state[2:] / speed
             deviation = float(np.sqrt(along @ self.covariance[2:, 2:] @ along))
             gone = float(np.hypot(*(self.state[:2] - self.born)))
             if self.entered >= SURE:
                 sure = speed > settings.certainty * deviation or gone > settings.sure_way
             else:
-                sure = speed > max(settings.round_certainty * deviation, settings.round_speed)
+                least = settings.least_speed if self.moved else settings.round_speed
+                sure = speed > max(settings.round_certainty * deviation, least)
             self.moves = sure and gone > settings.least_way
+            if self.moves:
+                self.moved, self.stood = True, 0.0
+
+    def go_on(self, dt: float, settings: TrackSettings) -> None:
+        """Remembers for how long it has stood, ``dt`` [s] after the last time: what turns round is slow for a moment, and moves on."""
+        self.stood = 0.0 if np.hypot(self.state[2], self.state[3]) >= settings.least_speed else self.stood + dt
 
 
 @dataclass
@@ -114,10 +127,12 @@ class MovingObjects:
         seen = np.where(ranges <= self.settings.farthest, ranges, 0.0)
         followed, mask = self._follow_round(points, seen, eye)
         labels = labels_of(points, np.where(mask, 0.0, seen))
+        walls = int(labels.max(initial=-1)) + 1
+        part_new(labels, widths_of(points, labels, walls) > self.settings.widest, seen_from.entered)
         count = int(labels.max(initial=-1)) + 1
-        widths = widths_of(points, labels, count)
         discs = discs_of(points, seen, labels, eye)
-        discs = discs[widths[discs[:, LABEL].astype(np.int64)] <= self.settings.widest]
+        thing = discs[:, LABEL].astype(np.int64)
+        discs = discs[(widths_of(points, labels, count)[thing] <= self.settings.widest) & ((thing < walls) | (discs[:, SPREAD] > 0.0))]
         matched = self._match(discs, [track for track in self.tracks if id(track) not in followed])
         found = followed | {id(track) for track in matched.values()}
         self._age(dt, [track for track in self.tracks if id(track) not in found], (eye, points, seen))
@@ -134,6 +149,8 @@ class MovingObjects:
             if track.moves or not disc[HIDDEN]:
                 track.judge(self.settings)
             moving[int(disc[LABEL])] = track.moves
+        for track in self.tracks:
+            track.go_on(dt, self.settings)
         mask[labels >= 0] = moving[labels[labels >= 0]]
         for x, y, _, _, radius in self.moving():  # parts of them that count as other things, or as parts of such
             mask |= (ranges > 0.0) & ((points[:, 0] - x) ** 2 + (points[:, 1] - y) ** 2 < (radius + BESIDE) ** 2)
