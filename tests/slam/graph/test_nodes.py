@@ -65,3 +65,21 @@ def test_who_walked_through_the_room_is_no_surface_of_it():
 def test_an_empty_room_keeps_all_its_surfaces():
     nodes = keyframes()
     assert all(len(nodes.still(i).points) > 0.98 * len(nodes.all[i].cloud.points) for i in range(len(nodes)))
+
+
+def test_a_keyframe_of_which_little_came_back_is_seen_along_with_those_before_it():
+    def part(i, reading):
+        turn = (20 * i) % len(reading.ranges)
+        beside = (np.arange(len(reading.ranges)) - turn) % len(reading.ranges) >= 0.08 * len(reading.ranges)
+        return replace(reading, ranges=np.where(beside, 0.0, reading.ranges))
+
+    nodes, k = keyframes(part), len(WAY) - 1
+    own, gathered = nodes.all[k].cloud, nodes.gathered(k)
+    assert own.is_scant
+    assert len(gathered.points) > 6 * len(own.points)
+    c, s = np.cos(WAY[k].yaw), np.sin(WAY[k].yaw)
+    x, y = (gathered.points @ np.array(((c, s), (-s, c))) + np.array(WAY[k][:2])).T
+    walls = [np.abs(x - w) for w in (-3.0, 4.0, 1.0, 2.5)] + [np.abs(y - w) for w in (-2.0, 3.0, 2.2)]
+    assert np.min(walls, axis=0).max() < 0.01
+    full = keyframes()
+    assert full.gathered(k) is full.all[k].cloud

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.slam.graph.nodes import KeyframeNodes, Node, Submap
+from uvf.slam.matching.cloud import Cloud
 from uvf.slam.matching.imls import Match, match
 from uvf.slam.matching.visibility import AGREES, THROUGH, verdicts
 
@@ -18,9 +19,12 @@ FLOOR = np.diag((0.01, 0.01, 0.003)) ** 2
 """Covariance that no match is better than: objects move, floors tilt the lidar [m^2, rad^2]."""
 
 
-def fitted(node: Node, submap: Submap, nodes: KeyframeNodes, guess: Pose2) -> Match | None:
-    """Match of a keyframe to a submap of ``nodes`` near ``guess`` (anchor_from_node); None where it does not fit."""
-    found = match(guess, node.cloud, submap.surfaces, NO_PRIOR)
+def fitted(node: Node, cloud: Cloud, submap: Submap, nodes: KeyframeNodes, guess: Pose2) -> Match | None:
+    """Match of a keyframe to a submap of ``nodes`` near ``guess`` (anchor_from_node); None where it does not fit.
+
+    cloud: its own, or ``KeyframeNodes.gathered``.
+    """
+    found = match(guess, cloud, submap.surfaces, NO_PRIOR)
     if found.share < LEAST_SHARE or found.rms > MOST_RMS:
         return None
     agree, through = looks(node, submap, nodes, found.map_from_base)

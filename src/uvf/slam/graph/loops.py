@@ -104,14 +104,14 @@ class LoopSearch:
         return self._match(k, submap, found.pose, found.score) if found else None
 
     def _query(self, k: int) -> Floats:
-        points = self.nodes.all[k].cloud.points
+        points = self.nodes.gathered(k).points
         points = points[np.hypot(*points.T) < QUERY_RANGE]
         _, first = np.unique(np.floor(points / QUERY_GRID).astype(np.int64), axis=0, return_index=True)
         thinned: Floats = points[first]
         return thinned
 
     def _match(self, k: int, submap: Submap, guess: Pose2, score: float) -> Closure | None:
-        found = fitted(self.nodes.all[k], submap, self.nodes, guess)
+        found = fitted(self.nodes.all[k], self.nodes.gathered(k), submap, self.nodes, guess)
         return Closure(submap.anchor, k, found.map_from_base, information_of(found), score * found.share) if found else None
 
 

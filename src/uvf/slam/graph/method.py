@@ -101,7 +101,7 @@ class GraphSlam:
             self._blind = True
             self._count(compose(inverse(motion.before), self._pose))
         moved = self._moved()
-        step_covariance = self._step_covariance(moved, found)
+        step_covariance = self._step_covariance(moved, found, cloud.is_thin)
         self._covariance = followed(self._node_covariance, self.nodes.poses[self._near], moved, step_covariance)
         if hypot(moved[0], moved[1]) > self.params.keyframe_distance or abs(moved[2]) > self.params.keyframe_turn:
             self._keep(Node(reading, cloud, self._way, self._turn), moved, step_covariance)
@@ -192,13 +192,14 @@ class GraphSlam:
         end = self._near + 1
         self._local = LocalMap(self.nodes.surfaces(range(max(0, end - RECENT), end)))
 
-    def _step_covariance(self, moved: Pose2, found: Match) -> Floats:
+    def _step_covariance(self, moved: Pose2, found: Match, is_thin: bool) -> Floats:
         """(3, 3) of the motion since the last keyframe, along its axes: of the match and, where that is weak, of the odometry."""
         before = self.nodes.all[-1]
         way = Pose2(self._way - before.travelled, 0.0, self._turn - before.turned)
         turn = turned(self.nodes.poses[self._near].yaw)
         matched = turn.T @ found.information @ turn * (DOUBTED if self._doubted else 1.0)
-        told = (UNKNOWN if self._blind else self.tracker.noise).information(way)
+        noise = self.tracker.trust.usual(self.tracker.noise) if is_thin else self.tracker.noise
+        told = (UNKNOWN if self._blind else noise).information(way)
         position, heading, per_turn = EDGE_FLOOR
         floor = np.diag((position, position, heading + per_turn * abs(moved[2]))) ** 2
         covariance: Floats = np.linalg.inv(matched + told) + floor

@@ -21,6 +21,8 @@ HALF = 6
 """Keyframes of a submap to either side of its anchor."""
 LOOKED = 8
 """Keyframes before one of which every second tells which of its points have moved, as it tells them."""
+GATHERED = 12
+"""Keyframes before one of which little came back that are seen along with it."""
 MOVED, TURNED = 0.01, 0.003
 """m, rad: a submap is drawn anew when one of its keyframes has moved by more against its anchor."""
 
@@ -89,6 +91,16 @@ class KeyframeNodes:
         """Cloud of a keyframe without moving things: without points that more of its neighbours look through than see."""
         cloud, stays = self.all[i].cloud, self._seen[i] >= 0
         return Cloud(cloud.points[stays], cloud.normals[stays], cloud.weights[stays])
+
+    def gathered(self, k: int) -> Cloud:
+        """Cloud of a keyframe in its own frame; where little of it came back, along with that of those before it, for a few posts in
+        view tell no heading."""
+        cloud = self.all[k].cloud
+        if not cloud.is_scant:
+            return cloud
+        clouds = [self.still(i).moved(self.between(k, i)) for i in range(max(0, k - GATHERED), k)] + [cloud]
+        points, normals, weights = (np.concatenate([getattr(c, part) for c in clouds]) for part in ("points", "normals", "weights"))
+        return Cloud(points, normals, weights, cloud.returned)
 
     def nearest(self, map_from_base: Pose2) -> int:
         """Number of the keyframe taken nearest to a pose; half a metre counts as much as a radian."""

@@ -101,8 +101,9 @@ class Tracker:
             self.trust.learn(step, motion, found.map_from_base)
 
     def _found(self, local: LocalMap, motion: OdometryMotion, cloud: Cloud) -> Match:
-        found = match(motion.guess, cloud, local.surfaces, motion.information)
-        if motion.told and not _plain(found):
+        known = self.trust.information(motion) if cloud.is_thin else motion.information
+        found = match(motion.guess, cloud, local.surfaces, known)
+        if motion.told and not cloud.is_thin and not _plain(found):
             found = match(motion.guess, cloud, local.surfaces, self.trust.information(motion))
         if self._doubts(found) or _leaps(motion.guess, found.map_from_base) or _strays(motion, cloud):
             return self._searched(local, motion, cloud, found)

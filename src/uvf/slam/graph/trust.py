@@ -77,17 +77,17 @@ class Trust:
 
         Of a motion that the odometry has not told, as it is.
         """
-        return self._usual(motion.noise).information(motion.step) if motion.told else motion.information
+        return self.usual(motion.noise).information(motion.step) if motion.told else motion.information
 
     def surprise(self, motion: OdometryMotion, found: Pose2) -> float:
         """How unlikely the pose ``found`` is after the motion [-]: log(1 + d^2) of its distance d in sigmas.
 
         It grows slowly far out, for wheels slip and vehicles are bumped into.
         """
-        return log1p(float(np.sum((_off(motion, found) / np.array(self._usual(motion.noise).sigmas(motion.step))) ** 2)))
+        return log1p(float(np.sum((_off(motion, found) / np.array(self.usual(motion.noise).sigmas(motion.step))) ** 2)))
 
-    def _usual(self, noise: MotionNoise) -> MotionNoise:
-        """What a turn adds is left as it is."""
+    def usual(self, noise: MotionNoise) -> MotionNoise:
+        """The noise by how far off this odometry usually is; what a turn adds is left as it is."""
         (p, q, r), (s, t, u) = noise.position, noise.heading
         return MotionNoise((self.position * p, self.position * q, r), (self.heading * s, self.heading * t, u))
 

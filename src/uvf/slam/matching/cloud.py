@@ -22,8 +22,9 @@ NEAR, FAR, SPREAD = 0.12, 2.0, 0.06
 ROUGH, CURVED = 0.004, 0.03
 """m^2 and share of the length's variance that a straight surface may have across it."""
 
-SCANT = 0.12
-"""Share of the beams below which little has come back."""
+SCANT, THIN = 0.12, 0.5
+"""Shares of the beams below which little has come back, and below which it is not enough to tell the heading better than an odometry
+that has proved itself: a post here and there."""
 UNSURE = 0.3  # weight of a point whose normal is not known
 
 
@@ -37,8 +38,18 @@ class Cloud:
     points: Floats
     normals: Floats
     weights: Floats
-    is_scant: bool = False
-    """Whether so little of the sweep came back that it may all be things that move."""
+    returned: float = 1.0
+    """Share of the beams that came back."""
+
+    @property
+    def is_scant(self) -> bool:
+        """Whether so little of the sweep came back that it may all be things that move."""
+        return self.returned < SCANT
+
+    @property
+    def is_thin(self) -> bool:
+        """Whether less of it came back than tells the heading well."""
+        return self.returned < THIN
 
     @property
     def flat(self) -> NDArray[np.bool_]:
@@ -125,7 +136,7 @@ def cloud_of(reading: Reading) -> Cloud:
     kept = np.flatnonzero(returned[::stride]) * stride
     normals = _normals(points, returned, (beams.origin, window_of(beams.bearings)), kept)
     weights = np.where((normals != 0.0).any(axis=1), 1.0, UNSURE)
-    return Cloud(points[kept], normals, weights, not returned.any() or bool(returned.mean() < SCANT))
+    return Cloud(points[kept], normals, weights, float(returned.mean()) if len(returned) else 0.0)
 
 
 def window_of(bearings: Floats) -> int:

@@ -31,7 +31,7 @@ def fit(a: VehicleMap, b: VehicleMap, j: int, a_from_j: Pose2) -> Closure | None
     """
     i = a.nodes.nearest(a_from_j)
     submap, node = a.nodes.submap(i), b.nodes.all[j]
-    found = fitted(node, submap, a.nodes, compose(inverse(a.nodes.poses[i]), a_from_j))
+    found = fitted(node, b.nodes.gathered(j), submap, a.nodes, compose(inverse(a.nodes.poses[i]), a_from_j))
     if found is None:
         return None
     agree, through = _seen_around(a, i, b, j, found.map_from_base)
