@@ -3,6 +3,8 @@
 from dataclasses import replace
 from math import hypot, inf, isfinite, isinf
 
+import numpy as np
+
 from schemas.messages import (
     CancelRequest,
     Event,
@@ -33,8 +35,8 @@ from uvf.planning.global_planner import NO_PLACE, GlobalPlanner, PlannedBody
 from uvf.planning.navigation.directive import Action, Directive
 from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings, Status
 from uvf.planning.navigation.progress import ProgressSettings
-from uvf.planning.navigation.right_of_way import Traveller, give_way
-from uvf.planning.smoothing import from_place
+from uvf.planning.navigation.right_of_way import AHEAD, Traveller, give_way
+from uvf.planning.smoothing import from_place, way_along
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
 
@@ -42,6 +44,7 @@ Point = tuple[float, float]
 
 FRONTIER_VIEW = 0.4  # m from a frontier, from where it is seen well enough
 EXPLORING_RECOVERIES = 2  # before another goal is chosen: there are more of them
+BLURRED = 0.1  # m by which the map may show a vehicle of the team elsewhere
 ROOM = 0.1  # m between two vehicles that pass each other
 MOVED = 0.2  # m of the place behind who is followed, from which on the way there is planned anew
 AGAIN = 10.0  # s after which a place of the mission, or home, is tried again where nobody has changed the mode
@@ -191,8 +194,11 @@ class PlannerService(Service):
         if not others:
             return directive
         own, passed = from_place(directive.path, here[:2])
-        apart = 2.0 * self._footprint.circumscribed_radius + ROOM
-        wait = give_way(Traveller(self._vehicle.name, own), self._ground.routes.map_clearance(own), others, apart)
+        own = own[way_along(own) <= AHEAD]
+        team = np.array([self._desk.in_map(place) for place in self._book.team.values()])
+        radius = self._footprint.circumscribed_radius
+        clearance = self._ground.routes.map_clearance(own, team, radius + BLURRED)
+        wait = give_way(Traveller(self._vehicle.name, own), clearance, others, 2.0 * radius + ROOM)
         if wait is None:
             return directive
         self._waits_for = wait.for_whom

@@ -1,5 +1,7 @@
 """Routes of the global planner on a map that may be wrong, with what the sensors see now on it."""
 
+from math import ceil
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -18,6 +20,7 @@ from uvf.planning.navigation.routes import KnownFree, cells_of, one_after_the_ot
 Floats = NDArray[np.float64]
 Cells = NDArray[np.int8]
 
+AROUND = 1.0  # m
 OCCUPIED = 65  # per cent, from which on a cell of the map is an obstacle
 WALL = np.ones((3, 3), dtype=np.bool_)
 
@@ -36,8 +39,6 @@ class GlobalRoutes:
         self._map: tuple[Cells, Frame] | None = None
         """The map as it was drawn, and with what is to be kept out of."""
         self._walls: NDArray[np.bool_] = np.zeros((0, 0), dtype=np.bool_)
-        self._clearance: Floats | None = None
-        """(rows, columns) m to the nearest obstacle of the map; made when it is asked for."""
         self._trusts_sight = False
         self._known_free = KnownFree()
         self._keep_out: tuple[ZoneMask, Pose2] | None = None
@@ -53,7 +54,7 @@ class GlobalRoutes:
         """A new map, (rows, columns) of -1 unknown, 0..100 per cent; frame: resolution [m] and origin [m]."""
         self._drawn, self._shown = (cells, frame), None
         cells = self._kept_out(cells, frame)
-        self._map, self._clearance = (cells, frame), None
+        self._map = cells, frame
         self._walls = ndimage.binary_dilation(cells >= OCCUPIED, WALL)
 
     def look(self, here: tuple[float, float]) -> bool:
@@ -92,16 +93,27 @@ class GlobalRoutes:
         """Whether no known obstacle is in the way of turning on the spot."""
         return self._layer.has_room((pose[0], pose[1]), self._planner.body.footprint.circumscribed_radius)
 
-    def map_clearance(self, path: Floats) -> Floats:
-        """(n,) m from the points of a path (n, 2) [m] to the nearest obstacle of the map, without what only the sensors see."""
+    def map_clearance(self, path: Floats, team: Floats, radius: float) -> Floats:
+        """(n,) m from the points of a path (n, 2) [m] to the nearest obstacle of the map, ``AROUND`` or more where none is near.
+
+        Without what only the sensors see, and without the team's vehicles, of ``radius`` [m] at (k, 2) [m]: where one stands for a
+        while the map shows it.
+        """
         out = np.full(len(path), np.inf)
-        if self._map is None or not self._map[0].size:
+        if self._map is None:
             return out
         cells, frame = self._map
-        if self._clearance is None:
-            self._clearance = (distance_field(cells >= OCCUPIED) - 0.5) * frame[0]
         at, inside = cells_of(path, frame, cells.shape)
-        out[inside] = self._clearance[at[:, 0], at[:, 1]]
+        if not len(at):
+            return out
+        around = ceil(AROUND / frame[0])
+        first, last = np.maximum(at.min(axis=0) - around, 0), at.max(axis=0) + around + 1
+        taken = cells[first[0] : last[0], first[1] : last[1]] >= OCCUPIED
+        rows, columns = np.indices(taken.shape, sparse=True)
+        for x, y in team.tolist():
+            column, row = ((place - low) / frame[0] - 0.5 for place, low in zip((x, y), frame[1], strict=True))
+            taken[np.hypot(rows + first[0] - row, columns + first[1] - column) * frame[0] <= radius] = False
+        out[inside] = ((distance_field(taken) - 0.5) * frame[0])[tuple((at - first).T)]
         return out
 
     def reset(self) -> None:

@@ -15,7 +15,7 @@ from uvf.planning.smoothing import resample, way_along
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-AHEAD = 5.0  # m of the way that is looked at
+AHEAD = 5.0  # m of the way that is worth looking at
 EVEN = 0.5  # m of difference in the ways to the passage, up to which the names decide
 JOINED = 0.4  # m between two narrow places that count as one passage
 
@@ -52,7 +52,7 @@ def give_way(own: Traveller, clearance: Floats, others: Sequence[Traveller], apa
 def _passages(along: Floats, narrow: Mask) -> list[slice]:
     """The narrow stretches of a path, as slices of its points."""
     found: list[slice] = []
-    for k in np.flatnonzero(narrow & (along <= AHEAD)).tolist():
+    for k in np.flatnonzero(narrow).tolist():
         if found and along[k] - along[found[-1].stop - 1] <= JOINED:
             found[-1] = slice(found[-1].start, k + 1)
         else:
