@@ -47,17 +47,22 @@ def test_what_is_round_is_known_to_move_at_once(speed):
         assert len(tracker.moving()) == 1 or t <= 0.1 + 0.12 / speed
 
 
+def stays_found(discs, seconds):
+    """The first disc, which moves at 1.5 m/s along y, from 0.5 s on."""
+    for t, tracker, _, _, _ in follow(discs, seconds, walls=ROOM):
+        if t > 0.5:
+            found, away = nearest(tracker.moving(), discs(t)[0])
+            assert away < 0.1, f"lost at {t} s"
+            assert found[3] == pytest.approx(1.5, abs=0.3)
+
+
 def test_a_round_thing_that_passes_along_a_wall_is_followed():
     """It touches the wall at x = 8 m from 0.75 s on."""
 
     def discs(t):
         return np.array(((7.5 - max(0.4 - 0.5 * t, 0.02), -2.0 + 1.5 * t, 0.5),))
 
-    for t, tracker, _, _, _ in follow(discs, 2.5, walls=ROOM):
-        if t > 0.5:
-            found, away = nearest(tracker.moving(), discs(t)[0])
-            assert away < 0.1, f"lost at {t} s"
-            assert found[3] == pytest.approx(1.5, abs=0.3)
+    stays_found(discs, 2.5)
 
 
 def test_round_things_that_run_into_each_other_are_followed_through():
@@ -66,11 +71,7 @@ def test_round_things_that_run_into_each_other_are_followed_through():
     def discs(t):
         return np.array(((4.0, -1.5 + 1.5 * t, 0.5), (4.55, 1.5 - 1.5 * t, 0.4)))
 
-    for t, tracker, _, _, _ in follow(discs, 2.0, walls=ROOM):
-        if t > 0.5:
-            found, away = nearest(tracker.moving(), discs(t)[0])
-            assert away < 0.1, f"lost at {t} s"
-            assert found[3] == pytest.approx(1.5, abs=0.3)
+    stays_found(discs, 2.0)
 
 
 def test_the_mask_is_of_the_beams_that_see_it():

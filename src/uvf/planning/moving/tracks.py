@@ -41,6 +41,7 @@ class TrackSettings:
     round_speed: float = 0.4  # m/s from which on what is round is believed to move by its middle alone
     round_certainty: float = 4.0  # times its own standard deviation that this speed must have
     lost: float = 0.3  # m from where something round is expected, within which its circle is sought
+    sought: float = 0.3  # s without being seen for which it is
     coast: float = 0.3  # s that a thing is kept where it should be seen and is not
     coast_hidden: float = 2.0  # s that it is kept where it cannot be seen
     farthest: float = 20.0  # m
@@ -162,7 +163,7 @@ class MovingObjects:
         Returns the identities of their tracks and the mask (n,) of the beams that see them.
         """
         s, free, found = self.settings, ranges.copy(), set()
-        known = [track for track in self.tracks if track.moves and track.round >= s.least_hits and track.hidden + track.unseen <= s.lost]
+        known = [track for track in self.tracks if track.moves and track.round >= s.least_hits and track.hidden + track.unseen <= s.sought]
         for track in sorted(known, key=lambda k: float(np.hypot(k.state[0] - eye[0], k.state[1] - eye[1]))):
             x, y = track.state[:2].tolist()
             own: Mask = np.zeros(len(ranges), dtype=np.bool_)

@@ -1,6 +1,7 @@
 """Places seen again: which old submap the newest keyframe fits into, if any."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from uvf.slam.graph.drift import Drift
 from uvf.slam.graph.fitting import fitted, information_of
 from uvf.slam.graph.nodes import KeyframeNodes, Submap
 from uvf.slam.matching.branch_and_bound import Window, search
+from uvf.slam.matching.cloud import Cloud
 
 Floats = NDArray[np.float64]
 
@@ -41,6 +43,22 @@ class Closure:
     score: float
 
 
+@dataclass(frozen=True)
+class _Sought:
+    """Keyframe k with its cloud, gathered once for all the places that it is compared with."""
+
+    k: int
+    cloud: Cloud
+
+    @cached_property
+    def thinned(self) -> Floats:
+        """(n, 2) m, the points that a place is searched by."""
+        points = self.cloud.points[np.hypot(*self.cloud.points.T) < QUERY_RANGE]
+        _, first = np.unique(np.floor(points / QUERY_GRID).astype(np.int64), axis=0, return_index=True)
+        kept: Floats = points[first]
+        return kept
+
+
 @dataclass
 class LoopSearch:
     """Searches for loop closures; decides nothing of what becomes of them."""
@@ -51,14 +69,14 @@ class LoopSearch:
     def near(self, k: int, ways: Floats) -> list[Closure]:
         """Closures of keyframe k at anchors that its path lengths ``ways`` (n,) [m] tie closely enough for a match at its believed pose."""
         found: list[Closure] = []
-        radius = self.drift.radius(ways)
+        sought, radius = _Sought(k, self.nodes.gathered(k)), self.drift.radius(ways)
         anchors = [a for a in self._anchors(k, radius) if radius[a] <= SURE]
         for a in sorted(anchors, key=lambda a: self._distance(a, k)):
             if len(found) >= TRIES or any(abs(a - c.i) < 4 * SPACING for c in found):
                 continue
-            closure = self._match(k, self.nodes.submap(a), self.nodes.between(a, k), 1.0)
+            closure = self._match(sought, self.nodes.submap(a), self.nodes.between(a, k), 1.0)
             if closure is None:
-                closure = self._search(k, a, Window(self.nodes.between(a, k), float(radius[a]), float(self.drift.turn(ways[a]))))
+                closure = self._search(sought, a, Window(self.nodes.between(a, k), float(radius[a]), float(self.drift.turn(ways[a]))))
             if closure is not None:
                 found.append(closure)
         return found
@@ -68,12 +86,12 @@ class LoopSearch:
 
         None where nothing fits, or where two places fit.
         """
-        radius = self.drift.radius(ways)
+        sought, radius = _Sought(k, self.nodes.gathered(k)), self.drift.radius(ways)
         found: list[Closure] = []
         for a in self._anchors(k, radius):
             if radius[a] > SURE:
                 centre = Pose2(0.0, 0.0, self.nodes.between(a, k).yaw)
-                closure = self._search(k, a, Window(centre, VIEW, float(self.drift.turn(ways[a]))))
+                closure = self._search(sought, a, Window(centre, VIEW, float(self.drift.turn(ways[a]))))
                 found += [closure] if closure else []
         if not found:
             return None
@@ -96,23 +114,16 @@ class LoopSearch:
         p, q = self.nodes.poses[a], self.nodes.poses[k]
         return float(np.hypot(p[0] - q[0], p[1] - q[1]) + 0.5 * abs(wrap(p[2] - q[2])))
 
-    def _search(self, k: int, a: int, window: Window) -> Closure | None:
+    def _search(self, sought: _Sought, a: int, window: Window) -> Closure | None:
         submap = self.nodes.submap(a)
         if len(submap.surfaces.points) == 0:
             return None
-        found = search(self._query(k), submap.field, window, LEAST_SCORE)
-        return self._match(k, submap, found.pose, found.score) if found else None
+        found = search(sought.thinned, submap.field, window, LEAST_SCORE)
+        return self._match(sought, submap, found.pose, found.score) if found else None
 
-    def _query(self, k: int) -> Floats:
-        points = self.nodes.gathered(k).points
-        points = points[np.hypot(*points.T) < QUERY_RANGE]
-        _, first = np.unique(np.floor(points / QUERY_GRID).astype(np.int64), axis=0, return_index=True)
-        thinned: Floats = points[first]
-        return thinned
-
-    def _match(self, k: int, submap: Submap, guess: Pose2, score: float) -> Closure | None:
-        found = fitted(self.nodes.all[k], self.nodes.gathered(k), submap, self.nodes, guess)
-        return Closure(submap.anchor, k, found.map_from_base, information_of(found), score * found.share) if found else None
+    def _match(self, sought: _Sought, submap: Submap, guess: Pose2, score: float) -> Closure | None:
+        found = fitted(self.nodes.all[sought.k], sought.cloud, submap, self.nodes, guess)
+        return Closure(submap.anchor, sought.k, found.map_from_base, information_of(found), score * found.share) if found else None
 
 
 def _apart(p: Pose2, q: Pose2) -> bool:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.maths.se2_arrays import wrapped
-from uvf.slam.matching.cloud import Cloud
+from uvf.slam.matching.cloud import Cloud, joined
 from uvf.slam.matching.likelihood import LikelihoodField, likelihood_field
 from uvf.slam.matching.point_map import PointMap, point_map
 from uvf.slam.matching.visibility import Rays, rays_of, verdicts
@@ -98,9 +98,8 @@ class KeyframeNodes:
         cloud = self.all[k].cloud
         if not cloud.is_scant:
             return cloud
-        clouds = [self.still(i).moved(self.between(k, i)) for i in range(max(0, k - GATHERED), k)] + [cloud]
-        points, normals, weights = (np.concatenate([getattr(c, part) for c in clouds]) for part in ("points", "normals", "weights"))
-        return Cloud(points, normals, weights, cloud.returned)
+        before = [self.still(i).moved(self.between(k, i)) for i in range(max(0, k - GATHERED), k)]
+        return joined([*before, cloud])
 
     def nearest(self, map_from_base: Pose2) -> int:
         """Number of the keyframe taken nearest to a pose; half a metre counts as much as a radian."""

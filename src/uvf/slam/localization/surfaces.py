@@ -9,7 +9,7 @@ from uvf.maths.compiled import compiled
 from uvf.maths.se2 import transform
 from uvf.models.world.map_file import GridMap
 from uvf.slam.maps.placing import values_at
-from uvf.slam.matching.cloud import Cloud, cloud_of
+from uvf.slam.matching.cloud import Cloud, cloud_of, joined
 from uvf.slam.method import Keyframe
 
 Floats = NDArray[np.float64]
@@ -27,10 +27,7 @@ PROBES = (1.6, 2.4)
 
 def of_keyframes(keyframes: Iterable[Keyframe], grid: GridMap) -> Cloud:
     """Surfaces that keyframes have hit and that ``grid``, the map drawn of them, still has as occupied; map frame."""
-    clouds = [cloud_of(k.reading).moved(k.map_from_base) for k in keyframes]
-    if not clouds:
-        return Cloud(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
-    whole = Cloud(*(np.concatenate([getattr(c, name) for c in clouds]) for name in ("points", "normals", "weights")))
+    whole = joined([cloud_of(k.reading).moved(k.map_from_base) for k in keyframes])
     stands = whole.flat & _near_occupied(grid, whole.points)
     return _thinned(Cloud(whole.points[stands], whole.normals[stands], whole.weights[stands]))
 

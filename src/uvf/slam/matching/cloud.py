@@ -1,5 +1,6 @@
 """A sweep as points with the direction of the surface they lie on."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,6 +61,14 @@ class Cloud:
     def moved(self, a_from_b: Pose2) -> "Cloud":
         """The cloud in frame a."""
         return Cloud(*placed(self.points, self.normals, np.array(a_from_b)), self.weights)
+
+
+def joined(clouds: Sequence[Cloud]) -> Cloud:
+    """All points of clouds in one frame; ``returned`` is that of the last one."""
+    if not clouds:
+        return Cloud(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
+    points, normals, weights = (np.concatenate([getattr(c, part) for c in clouds]) for part in ("points", "normals", "weights"))
+    return Cloud(points, normals, weights, clouds[-1].returned)
 
 
 @compiled

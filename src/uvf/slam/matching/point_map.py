@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
-from uvf.slam.matching.cloud import Cloud
+from uvf.slam.matching.cloud import Cloud, joined
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -51,11 +51,9 @@ def _order(points: Floats, corner: tuple[float, float], shape: tuple[int, int]) 
 
 def point_map(clouds: list[Cloud]) -> PointMap:
     """Point map of the points whose normal is known, of clouds in one frame."""
-    points = np.concatenate([np.empty((0, 2)), *(c.points for c in clouds)])
-    normals = np.concatenate([np.empty((0, 2)), *(c.normals for c in clouds)])
-    weights = np.concatenate([np.empty(0), *(c.weights for c in clouds)])
-    known = (normals != 0.0).any(axis=1)
-    points, normals, weights = points[known], normals[known], weights[known]
+    whole = joined(clouds)
+    known = whole.flat
+    points, normals, weights = whole.points[known], whole.normals[known], whole.weights[known]
     if len(points) == 0:
         return PointMap((points, normals, weights, np.zeros(2, dtype=np.int64), 0.0, 0.0, 1, 1))
     x, y = (float(v) - CELL for v in points.min(axis=0))
