@@ -6,7 +6,7 @@
 from functools import partial
 from pathlib import Path
 
-from benchmarks.planning import coverage, curves, goals, movingai, nav2maps, recovery, sampling, survey_flown
+from benchmarks.planning import coverage, curves, cycle, goals, movingai, nav2maps, recovery, sampling, survey_flown
 from benchmarks.planning.barn import cases as barn
 from launch.commands.bench import Case, Figures
 from launch.commands.bench_selection import Selection
@@ -26,6 +26,7 @@ def cases(data: Path | None, selection: Selection) -> dict[str, Case]:
     """The cases with the runs that were selected."""
     found: dict[str, Case] = {name: partial(measure, selection) for name, measure in MEASURED.items()}
     found |= {"dubins": partial(_named, "dubins", curves.measure), "survey": partial(_named, "survey", survey_flown.measure)}
+    found |= {"cycle": partial(_named, "cycle", cycle.measure)}
     found |= goals.cases(selection)
     for group, inner in (("coverage", coverage.cases(data)), ("sampling", sampling.CITIES)):
         found |= {f"{group}:{name}": partial(_named, group, case) for name, case in inner.items()}

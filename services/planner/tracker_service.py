@@ -184,6 +184,7 @@ class TrackerService(Service):
             braking=params.deceleration,
             angular_braking=body.max_angular_acceleration,
             goal=GoalTolerances(params.goal_tolerance, 0.05),
+            evasion=limits._replace(min_speed=-speed) if params.local_planner == "mppi" else None,
         )
         if params.local_planner == "mppi":
             steps = ceil(HORIZON / PERIOD)

@@ -132,5 +132,5 @@ def stack_of(name: str, briefing: Briefing) -> MaplessStack:
     """The stack with the local planner of a name as it is by default."""
     footprint = RobotFootprint.polygon(briefing.robot.footprint)
     planner = make_local_planner(name, STACK_LIMITS, footprint, briefing.seed)
-    settings = ControllerSettings(size=SIZE, evasion=EVASION_LIMITS)
+    settings = ControllerSettings(size=SIZE, evasion=EVASION_LIMITS, stops_for_fast=False)
     return MaplessStack(briefing.robot.scanner, LocalController(footprint, STACK_LIMITS, planner, settings))

@@ -5,6 +5,7 @@ import pytest
 
 from tests.planning.local.grounds import BODY, LIMITS
 from tests.planning.moving.scans import DT, Lidar
+from uvf.maths.kinematics import Twist, move
 from uvf.maths.se2 import Pose2
 from uvf.planning.costmap.inflation import LETHAL
 from uvf.planning.costmap.obstacle_layer import ObstacleLayer
@@ -18,9 +19,10 @@ PATH = np.column_stack((np.linspace(0.0, 4.0, 41), np.zeros(41)))
 WALLS = [(0.0, 8.0), (np.pi / 2, 6.0), (np.pi, 7.0), (-np.pi / 2, 6.0)]
 
 
-def watching(discs_at, seconds):
+def watching(discs_at, seconds, *, stops_for_fast=False):
     """A controller that stands and has seen discs move for some time."""
-    controller = LocalController(BODY, LIMITS, Mppi(LIMITS, BODY, MppiSettings(), 1), ControllerSettings(size=18.0, evasion=FAST))
+    settings = ControllerSettings(size=18.0, evasion=FAST, stops_for_fast=stops_for_fast)
+    controller = LocalController(BODY, LIMITS, Mppi(LIMITS, BODY, MppiSettings(), 1), settings)
     lidar, rng = Lidar(), np.random.default_rng(0)
     for k in range(round(seconds / DT) + 1):
         ranges = lidar.ranges(np.zeros(3), discs_at(k * DT), WALLS, rng)
@@ -36,9 +38,11 @@ def test_what_moves_leaves_no_marks_where_it_is_and_was():
     assert len(standing.layer.lethal_near((2.5, -0.5), 0.6)) > 5
 
 
-@pytest.mark.parametrize(("speed", "stops"), [(0.0, True), (0.25, True), (1.2, False)])
-def test_the_stop_heeds_what_stands_or_crawls_and_not_what_is_quicker(speed, stops):
-    controller = watching(lambda t: np.array(((0.95, speed * (t - 1.0), 0.3),)), 1.0)
+@pytest.mark.parametrize(
+    ("speed", "stops_for_fast", "stops"), [(0.0, False, True), (0.25, False, True), (1.2, False, False), (1.2, True, True)]
+)
+def test_the_stop_heeds_what_stands_or_crawls_and_what_is_quicker_where_it_is_to(speed, stops_for_fast, stops):
+    controller = watching(lambda t: np.array(((0.95, speed * (t - 1.0), 0.3),)), 1.0, stops_for_fast=stops_for_fast)
     command = controller.made_safe((1.4, 0.0), (1.4, 0.0))
     assert (command[0] < 1.4) == stops
 
@@ -69,11 +73,13 @@ def test_a_disc_is_freed_cell_by_cell(centre):
     assert np.array_equal(layer.cells != LETHAL, away <= 0.4)
 
 
-def test_who_holds_stands_until_something_comes_at_it():
+@pytest.mark.parametrize("stops_for_fast", [False, True])
+def test_who_holds_stands_until_something_comes_at_it(stops_for_fast):
     calm = watching(lambda t: np.zeros((0, 3)), 0.2)
     assert calm.hold(HERE, (0.0, 0.0)) == (0.0, 0.0)
-    threatened = watching(lambda t: np.array(((4.5 - 1.5 * t, 0.1, 0.4),)), 1.0)
-    velocity = (0.0, 0.0)
-    for _ in range(8):
-        velocity = threatened.hold(HERE, velocity)
-    assert abs(velocity[0]) > 0.2
+    threatened = watching(lambda t: np.array(((4.5 - 1.5 * t, 0.1, 0.4),)), 1.0, stops_for_fast=stops_for_fast)
+    velocity, pose = (0.0, 0.0), HERE
+    for _ in range(40):
+        velocity = threatened.hold(pose, velocity)
+        pose = move(pose, Twist(*velocity), 0.05)
+    assert np.hypot(pose[0], pose[1]) > 0.4

@@ -30,10 +30,10 @@ def poses(state, commands):
 
 
 def outline_gap(row, disc, radius):
-    """Distance [m] from the outline, as the largest of those to its sides, to a disc."""
+    """Distance [m] from the outline to a disc, as the largest of those to its sides and to the circle about it."""
     c, s = np.cos(row[2]), np.sin(row[2])
     dx, dy = disc[0] - row[0], disc[1] - row[1]
-    return max(abs(c * dx + s * dy) - 0.25, abs(c * dy - s * dx) - 0.2) - radius
+    return max(abs(c * dx + s * dy) - 0.25, abs(c * dy - s * dx) - 0.2, np.hypot(dx, dy) - np.hypot(0.25, 0.2)) - radius
 
 
 def expected(now, commands):

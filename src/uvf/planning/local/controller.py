@@ -52,8 +52,9 @@ class ControllerSettings:
     angular_braking: float = 10.0  # rad/s^2
     goal: GoalTolerances = field(default_factory=GoalTolerances)
     evasion: Limits | None = None
-    """Limits while something moves near by, for a vehicle that may evade: what it can do, not what is asked of it. It then leaves what
-    moves fast to the local planner; one that may not stops for it as for anything else."""
+    """Limits while something moves near by, for a vehicle that makes way for it also where it would stand; None: it only stops."""
+    stops_for_fast: bool = True
+    """Whether the stop heeds what moves fast, too. A vehicle as quick as what comes at it leaves that to the local planner."""
 
 
 class Drive(Enum):
@@ -128,7 +129,7 @@ class LocalController:
         The local planner evades it. Braking in its way would be worse, and so would be braking for what is about to pass.
         """
         out = np.zeros(len(ends), dtype=np.bool_)
-        if self.settings.evasion is None:
+        if self.settings.stops_for_fast:
             return out
         for x, y, vx, vy, radius in self.moving.moving():
             if hypot(vx, vy) >= FAST:

@@ -138,15 +138,16 @@ def _predicted(state: State, horizon: int, step: tuple[float, Limits], others: O
 
 
 @compiled
-def _closest(discs: Floats, count: int, others: Others, motion: Motion) -> float:
-    """Distance [m] from the outline to the nearest of the discs, ``others.heed`` at most."""
+def _closest(discs: Floats, count: int, others: Others, motion: Motion, most: float) -> float:
+    """Distance [m] from the outline to the nearest of the discs, ``most`` at most, which is not below 0; at corners no more than that."""
     x, y, _, _, _, cosine, sine = motion
-    closest = others.heed
+    closest = most
     for m in range(count):
         dx, dy = discs[m, 0] - x, discs[m, 1] - y
-        reach = others.circumscribed_radius + discs[m, 2] + closest
-        if dx * dx + dy * dy < reach * reach:
-            closest = min(closest, _gap(others.sides, dx, dy, cosine, sine) - discs[m, 2])
+        reach, square = others.circumscribed_radius + discs[m, 2] + closest, dx * dx + dy * dy
+        if square < reach * reach:
+            gap = max(_gap(others.sides, dx, dy, cosine, sine), np.sqrt(square) - others.circumscribed_radius)
+            closest = min(closest, gap - discs[m, 2])
     return closest
 
 
@@ -176,16 +177,21 @@ def _roll(
     """One rollout: fills ``out`` (FEATURES,) for commands (n, 2), among discs as ``_predicted`` gives them."""
     dt, limits = step
     others, discs, counts = moving
-    x0, y0, resolution = grids.frame
+    x0, y0, per_metre = grids.frame[0], grids.frame[1], 1.0 / grids.frame[2]
     horizon = commands.shape[0]
-    cost = worst = mean_to_go = off_path = back = turned = near = collided = fast = close = to_go = 0.0
+    cost = worst = mean_to_go = off_path = back = turned = collided = fast = close = to_go = 0.0
+    apart = np.inf  # least distance to what moves, in units of the doubt about where it is
     motion = state.x, state.y, state.yaw, state.speed, state.turn_rate, np.cos(state.yaw), np.sin(state.yaw)
+    slowness, (rows, columns) = 1.0 / limits.max_speed, grids.values.shape
     inside = _is_blocked(grids, state.x, state.y, state.yaw)
     for i in range(horizon):
         motion = _driven(motion, commands[i], dt, limits)
         x, y, yaw, speed, turn, cosine, sine = motion
-        share = speed / limits.max_speed
-        r, c = _cell(grids, x, y)
+        share = speed * slowness
+        across, up = (x - x0) * per_metre, (y - y0) * per_metre
+        r, c = -1, -1
+        if 0.0 <= across < columns and 0.0 <= up < rows:
+            r, c = int(up), int(across)
         if r >= 0:
             if not _heading_bit(grids.blocked, r, c, yaw):
                 inside = False
@@ -194,13 +200,14 @@ def _roll(
                 close += 1.3
             else:
                 collided = 1.0 - i / horizon
-        to_go = _sample(grids.to_go, (x - x0) / resolution, (y - y0) / resolution)
+        to_go = _sample(grids.to_go, across, up)
         if counts[i] > 0:
-            closest = _closest(discs[i], counts[i], others, motion)
+            doubt = others.doubt[0] + others.doubt[1] * (i + 1) * dt
+            closest = _closest(discs[i], counts[i], others, motion, min(others.heed, apart * doubt))
             if closest <= 0.0:
                 collided = max(collided, 1.0 - i / horizon)
             if closest < others.heed:
-                near = max(near, np.exp(-max(closest, 0.0) / (others.doubt[0] + others.doubt[1] * (i + 1) * dt)))
+                apart = min(apart, max(closest, 0.0) / doubt)
         if collided > 0.0:
             mean_to_go += (horizon - i) * to_go
             break
@@ -215,7 +222,7 @@ def _roll(
             back -= speed * dt * (1.0 if r >= 0 and grids.seen[r, c] else UNSEEN)
     out[COLLIDED], out[COST], out[WORST] = collided, cost / (252.0 * horizon), worst
     out[TO_GO], out[MEAN_TO_GO], out[OFF_PATH] = to_go, mean_to_go / horizon, off_path / horizon
-    out[REVERSED], out[TURNED], out[NEAR] = back, turned / horizon, near
+    out[REVERSED], out[TURNED], out[NEAR] = back, turned / horizon, np.exp(-apart)
     out[FAST], out[CLOSE] = fast / (252.0 * horizon), close / horizon
     out[ASIDE] = _aside(grids, motion, to_go)
 
