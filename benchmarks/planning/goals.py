@@ -2,7 +2,8 @@
 
 In lockstep. Goals lie on the floor that the rover can reach and its map knows. ``reached %``: it says so, and truly is within 0.3 m.
 ``m``, ``s``: straight distance and time of those that were reached. ``closest m``: least true distance of its outline to anything;
-``touched``: whether its bumper says so. The truth draws the goals and judges, and nobody else hears it.
+``touched``: whether its bumper says so. The truth draws the goals and judges, and nobody else hears it. A rover that a failsafe has
+put on hold has missed its goal, and is told to go on before the next one, as an operator would do.
 """
 
 import tempfile
@@ -18,7 +19,7 @@ from launch import catalogue
 from launch.commands.bench import Case, Figures
 from launch.commands.bench_selection import Selection
 from schemas import topics
-from schemas.messages import Contact, GoalRequest, Grid, NavState, NavStatus, Reply, Vector3
+from schemas.messages import Contact, GoalRequest, Grid, Mode, ModeRequest, NavState, NavStatus, Reply, Vector3
 from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.urdf.model import load_urdf
@@ -45,6 +46,7 @@ EXPLORED = 200.0  # s
 GOALS = 50
 PATIENCE = 120.0  # s for a goal
 THERE = 0.3  # m
+SETTLED = 0.2  # s after a change of the mode
 APART = 0.15  # m beyond the rover's radius that a goal lies from obstacles
 CELL = 0.05  # m
 WORLDS = tuple(f"goals:{world}" for world in BEGUN)
@@ -120,6 +122,10 @@ class Errands:
     def drive(self, goal: Floats) -> tuple[bool, float, float]:
         """Whether the goal was reached, and truly so; its distance [m] at the start, and the time [s] that it took."""
         begun, x, y, _ = self.heard.true[-1]
+        mode = ModeRequest(mode=Mode.MODE_MISSION, source="bench")
+        self._lockstep.bus.call(topics.SET_MODE.at(VEHICLE), mode.SerializeToString(), round(begun * 1e9), lambda *reply: None)
+        self._lockstep.run(begun + SETTLED)
+        begun = self.heard.true[-1][0]
         request = GoalRequest(position=Vector3(x=goal[0], y=goal[1]), yaw=float("nan"), source="bench")
         replies: list[Reply] = []
         self._lockstep.bus.call(

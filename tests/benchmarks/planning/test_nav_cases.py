@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 from benchmarks.planning import cases as nav
-from benchmarks.planning import curves, recovery, sampling
+from benchmarks.planning import curves, cycle, recovery, sampling
 from launch.commands.bench_selection import Selection, check_known
 from launch.settings import benchmark_modules
 from uvf.maths.curves.dubins_words import dubins_length
 from uvf.models.yaml_data import BadInput
+from uvf.planning.local.planners import LOCAL_PLANNERS
 
-NAMES = {"barn", "dynabarn", "recovery", "dubins", "coverage", "sampling", "survey", "movingai", "nav2maps", "goals"}
+NAMES = {"barn", "dynabarn", "recovery", "cycle", "dubins", "coverage", "sampling", "survey", "movingai", "nav2maps", "goals"}
 
 
 def test_the_group_has_each_case_and_planning_has_no_other_group():
@@ -40,6 +41,15 @@ def test_the_seed_and_the_number_of_trials_reach_recovery(monkeypatch):
     rows = nav.cases(None, Selection(seed=5, trials=2))["recovery"](None)
     assert asked == [5, 6] * 8 and all(name.startswith("recovery: ") for name in rows)
     assert rows["recovery: dead end"]["right"] == 1.0 and rows["recovery: closed room"]["right"] == 0.0
+
+
+def test_a_cycle_is_told_by_its_parts_and_for_each_local_planner(monkeypatch):
+    monkeypatch.setattr(cycle, "PLACES", 4)
+    monkeypatch.setattr(cycle, "SAMPLES", 400)
+    rows = nav.cases(None, Selection())["cycle"](None)
+    parts = {"cycle: costmap 100 x 100, 720 beams", "cycle: window", "cycle: mppi 400 x 56"}
+    assert set(rows) == parts | {f"cycle: {name}" for name in LOCAL_PLANNERS}
+    assert all(row["n"] == 3 and 0.0 < row["ms"] <= row["worst ms"] for row in rows.values())
 
 
 def test_dubins_lengths_are_compared_with_those_of_the_files(tmp_path, monkeypatch):
