@@ -5,15 +5,15 @@ thread, after one round that warms up. ``costmap`` marks and clears by all beams
 go, the way off the path and the shut headings on a window of 6 m; ``mppi 2000 x 56`` draws so many futures of so many steps.
 """
 
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.measuring.timing import on_thread
 from benchmarks.planning.barn.jackal import JACKAL
 from benchmarks.planning.barn.simulation import Surroundings
 from benchmarks.planning.barn.stack import STACK_LIMITS, Beams
@@ -31,7 +31,6 @@ from uvf.planning.local.planners import LOCAL_PLANNERS, make_local_planner
 from uvf.planning.local.window import Grids, WindowSettings, local_window
 
 Floats = NDArray[np.float64]
-T = TypeVar("T")
 
 PLACES, WAY = 60, 12.0  # along a way of so many m
 POSTS, MOVING = 120, 6
@@ -59,40 +58,29 @@ class Cycle:
     beams: Beams
     path: Floats
 
-    def layer(self, place: Place, side: float) -> tuple[ObstacleLayer, BeamObservation]:
-        """An empty window about a place, and what is to be taken into it."""
+    def costmap(self, place: Place, side: float) -> tuple[float, Costmap]:
+        """Of one scan, in an empty window about the place."""
         layer = ObstacleLayer(side, RESOLUTION)
         layer.recentre(place.pose[:2])
         (eye,) = transform(place.pose, np.array((self.beams.eye,))).tolist()
         ends = transform(place.pose, self.beams.points(place.ranges, JACKAL.scanner.range_max))
-        return layer, BeamObservation(0.0, 0.0, (eye[0], eye[1]), ends, place.ranges > 0.0)
-
-    def costmap(self, place: Place, side: float) -> tuple[float, Costmap]:
-        """Of one scan."""
-        layer, seen = self.layer(place, side)
+        seen = BeamObservation(0.0, 0.0, (eye[0], eye[1]), ends, place.ranges > 0.0)
 
         def made() -> Costmap:
             layer.observe(seen)
             return layer.costmap(self.footprint, INFLATION)
 
-        return timed(made)
+        return on_thread(made)
 
     def window(self, place: Place) -> tuple[float, Grids]:
         """Of a costmap that is there."""
         costs, factors = self.costmap(place, SIDE_OF_WINDOW)[1], leaving_factors(4.0, 1.0)
-        return timed(lambda: local_window(costs, place.pose[:2], self.path, factors, WindowSettings()))
+        return on_thread(lambda: local_window(costs, place.pose[:2], self.path, factors, WindowSettings()))
 
     def choice(self, planner: LocalPlanner, place: Place, grids: Grids) -> float:
         """Of one velocity."""
         now = LocalSituation(State(*place.pose, SPEED, 0.0), grids, self.path, place.obstacles)
-        return timed(lambda: planner.command(now))[0]
-
-
-def timed(made: Callable[[], T]) -> tuple[float, T]:
-    """CPU milliseconds of this thread, and the result."""
-    begun = time.thread_time()
-    found = made()
-    return 1e3 * (time.thread_time() - begun), found
+        return on_thread(lambda: planner.command(now))[0]
 
 
 def measure(data: Path | None) -> Figures:

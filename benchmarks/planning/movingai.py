@@ -12,11 +12,13 @@ over the shortest path's.
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.measuring.timing import on_thread
 from benchmarks.planning.grid_maps import Scenario, scenarios
 from launch.commands.bench import Figures
 from launch.commands.bench_selection import Selection
@@ -56,13 +58,6 @@ def measure(selection: Selection, data: Path | None) -> Figures:
     return rows | _by_name(min(every, key=lambda one: abs(one.cells.size - MIDDLE)))
 
 
-def timed(search: Search, start: Cell, goal: Cell) -> tuple[float, GridPath | None]:
-    """CPU milliseconds of this thread, and the answer."""
-    begun = time.thread_time()
-    found = search(start, goal)
-    return 1e3 * (time.thread_time() - begun), found
-
-
 def _of_map(one: Scenario) -> dict[str, list[float]]:
     """What each query has given."""
     costs, factors = one.costmap(), cost_factors(0.0)
@@ -72,7 +67,7 @@ def _of_map(one: Scenario) -> dict[str, list[float]]:
     for name, search in (("astar", grid.astar), ("jps", grid.jump_points)):
         search(_cell(one.ends[-1, :2]), _cell(one.ends[-1, 2:]))
         for ends, length, slack in zip(one.ends, one.lengths, tolerance, strict=True):
-            ms, found = timed(search, _cell(ends[:2]), _cell(ends[2:]))
+            ms, found = on_thread(partial(search, _cell(ends[:2]), _cell(ends[2:])))
             raw[name].append(ms)
             raw[f"{name} ok"].append(float(found is not None and abs(found.cost - length) <= slack))
             raw["lost"].append(float(found is None))
@@ -133,9 +128,9 @@ def _by_name(one: Scenario) -> Figures:
         planner.plan(queries[0])
         prepared, lengths, taken = 1e3 * (time.thread_time() - begun), [], []
         for query in queries:
-            begun = time.thread_time()
-            lengths.append(planner.plan(query).length)
-            taken.append(1e3 * (time.thread_time() - begun))
+            ms, found = on_thread(partial(planner.plan, query))
+            lengths.append(found.length)
+            taken.append(ms)
         ratios = [a / b for a, b in zip(lengths, shortest, strict=True) if np.isfinite(a)]
         rows[f"movingai: {one.name}: {name}"] = {
             "queries": float(len(queries)),

@@ -7,12 +7,12 @@ of Nav2's figures, from pose to pose with headings of chance, which are at least
 ``held %`` of the paths pass a check of outline and turns that knows no planner; ``failed ms`` is the mean of queries without a path.
 """
 
-import time
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from benchmarks.measuring.timing import on_thread
 from benchmarks.planning.driven_check import DrivenCheck
 from benchmarks.planning.grid_maps import RosMap, ros_maps
 from launch.commands.bench import Figures
@@ -112,9 +112,7 @@ def _pair(
 
 
 def _asked(planner: GlobalPathPlanner, query: PathQuery, check: DrivenCheck | None = None) -> Answer:
-    begun = time.thread_time()
-    found = planner.plan(query)
-    ms = 1e3 * (time.thread_time() - begun)
+    ms, found = on_thread(lambda: planner.plan(query))
     held = np.nan
     if check is not None and found.path is not None:
         held = float(check.holds(found.path, SETTINGS.minimum_turning_radius))

@@ -84,12 +84,16 @@ def _heading_bit(bits: Bits, r: int, c: int, yaw: float) -> bool:
 
 
 @compiled
+def _cell_at(grids: Grids, across: float, up: float) -> tuple[int, int]:
+    """Row and column of a place in cells from the corner of cell [0, 0]; (-1, -1) outside the window."""
+    rows, columns = grids.values.shape
+    return (int(up), int(across)) if 0.0 <= across < columns and 0.0 <= up < rows else (-1, -1)
+
+
+@compiled
 def _cell(grids: Grids, x: float, y: float) -> tuple[int, int]:
     """Row and column of a place [m] in the window; (-1, -1) where it lies outside."""
-    r, c = int(np.floor((y - grids.frame[1]) / grids.frame[2])), int(np.floor((x - grids.frame[0]) / grids.frame[2]))
-    if 0 <= r < grids.values.shape[0] and 0 <= c < grids.values.shape[1]:
-        return r, c
-    return -1, -1
+    return _cell_at(grids, (x - grids.frame[0]) / grids.frame[2], (y - grids.frame[1]) / grids.frame[2])
 
 
 @compiled
@@ -182,16 +186,14 @@ def _roll(
     cost = worst = mean_to_go = off_path = back = turned = collided = fast = close = to_go = 0.0
     apart = np.inf  # least distance to what moves, in units of the doubt about where it is
     motion = state.x, state.y, state.yaw, state.speed, state.turn_rate, np.cos(state.yaw), np.sin(state.yaw)
-    slowness, (rows, columns) = 1.0 / limits.max_speed, grids.values.shape
+    slowness = 1.0 / limits.max_speed
     inside = _is_blocked(grids, state.x, state.y, state.yaw)
     for i in range(horizon):
         motion = _driven(motion, commands[i], dt, limits)
         x, y, yaw, speed, turn, cosine, sine = motion
         share = speed * slowness
         across, up = (x - x0) * per_metre, (y - y0) * per_metre
-        r, c = -1, -1
-        if 0.0 <= across < columns and 0.0 <= up < rows:
-            r, c = int(up), int(across)
+        r, c = _cell_at(grids, across, up)
         if r >= 0:
             if not _heading_bit(grids.blocked, r, c, yaw):
                 inside = False
