@@ -16,6 +16,7 @@ from schemas.messages import (
     MissionProgress,
     MissionRequest,
     ModeRequest,
+    Odometry,
     ParamValues,
     PoseInFrame,
     RallyPoints,
@@ -42,6 +43,7 @@ class Inputs(Reads):
     planner: DriveCommand | None = optional(topics.DRIVE.by("planner"))
     stop: StopStatus = stop_all()
     pose: PoseInFrame | None = optional(topics.POSE)
+    odometry: Odometry | None = optional(topics.ODOMETRY)
     link: Link | None = optional(topics.LINK)
     imu: list[Imu] = optional(every(topics.IMU))
     ticks: WheelTicks | None = optional(topics.WHEELS)

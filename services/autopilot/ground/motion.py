@@ -1,4 +1,4 @@
-"""Whether a ground vehicle moves as its wheels are told to, and whether it stands upright: by encoders, pose and accelerometer."""
+"""Whether a ground vehicle moves as its wheels are told to, and whether it stands upright: by encoders, odometry and accelerometer."""
 
 import math
 from collections.abc import Sequence
@@ -6,18 +6,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from schemas.messages import Imu, WheelTicks
-from services.autopilot.ground.fence import GroundPose
 from uvf.maths.filters import LowPass
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.rotations import from_euler, matrix
 
 ASKED = 0.03  # m/s of a wheel, from which on it is asked to turn
 TURNS = 0.2  # of what is asked for; less is held fast
-SLIP = 0.35  # of the wheels' way, from which on they turn in vain; the map leads the pose back by as much
-LAG, POSE_LAG = 0.4, 1.0  # s
+SLIP = 0.35  # of the wheels' way, from which on they turn in vain
+LAG, SPEED_LAG = 0.4, 1.0  # s
 WELL = 1.0  # s of moving as asked, after which it is stuck no more
 TILT_TIME = 0.3  # s
-JUMP = 0.5  # m, of a pose that was set anew
+JUMP = 0.5  # m, of ticks that are counted anew
 
 
 class WheelSpeedometer:
@@ -64,18 +63,17 @@ class StuckDetector:
         self.how = ""
         self._wheels = wheels
         self._asked = LowPass(LAG), LowPass(LAG)
-        self._ahead = LowPass(POSE_LAG)
-        self._rolls = LowPass(POSE_LAG)
-        self._here: GroundPose | None = None
+        self._ahead = LowPass(SPEED_LAG)
+        self._rolls = LowPass(SPEED_LAG)
         self._well = 0.0
 
     def forget(self) -> None:
         """Starts anew, when somebody has the vehicle try again."""
         self.stuck_for = self._well = 0.0
 
-    def step(self, asked: WheelSpeeds, here: GroundPose | None, dt: float) -> None:
-        """One cycle of ``dt`` [s]. asked: commanded rim speeds [m/s]; here: pose in the world frame."""
-        slips = self._slips(here, dt)
+    def step(self, asked: WheelSpeeds, speed: float | None, dt: float) -> None:
+        """One cycle of ``dt`` [s]. asked: commanded rim speeds [m/s]; speed: forward, as estimated [m/s]; None: unknown."""
+        slips = self._slips(speed, dt)
         wheels = self._wheels
         left, right = (lag.step(speed, dt) for lag, speed in zip(self._asked, asked, strict=True))  # as late as what is measured
         pairs = ((left, wheels.left.value), (right, wheels.right.value))
@@ -89,17 +87,12 @@ class StuckDetector:
         elif self._well >= WELL:
             self.stuck_for = 0.0
 
-    def _slips(self, here: GroundPose | None, dt: float) -> bool:
-        """Whether the pose does not come along with the wheels."""
-        before, self._here = self._here, here
-        if here is None or before is None:
+    def _slips(self, speed: float | None, dt: float) -> bool:
+        """Whether the vehicle does not come along with its wheels."""
+        if speed is None or not math.isfinite(speed):
             return False
-        dx, dy = here.x - before.x, here.y - before.y
-        if math.hypot(dx, dy) < JUMP:
-            self._ahead.step((dx * math.cos(here.yaw) + dy * math.sin(here.yaw)) / dt, dt)
-            self._rolls.step(self._wheels.speed, dt)
-        rolls = self._rolls.value or 0.0
-        return abs(rolls) >= ASKED and (rolls - (self._ahead.value or 0.0)) * math.copysign(1.0, rolls) > SLIP * abs(rolls)
+        ahead, rolls = self._ahead.step(speed, dt), self._rolls.step(self._wheels.speed, dt)
+        return abs(rolls) >= ASKED and (rolls - ahead) * math.copysign(1.0, rolls) > SLIP * abs(rolls)
 
 
 class TiltEstimate:

@@ -25,6 +25,8 @@ class GroundSensorInputs:
     """The messages of one cycle; None: nothing fresh."""
 
     here: GroundPose | None = None
+    speed: float | None = None
+    """m/s forward, as estimated."""
     link: Link | None = None
     imu: list[Imu] = field(default_factory=list)
     wheels: WheelTicks | None = None
@@ -117,7 +119,7 @@ class GroundFailsafeMonitor:
         for name, lacking in lacks.items():
             self._times[name] = self._times[name] + dt if lacking else 0.0
         self._wheels.step(sensed.wheels)
-        self._grip.step(doing.asked, sensed.here, dt)
+        self._grip.step(doing.asked, sensed.speed, dt)
         self._tilt.step(sensed.imu, dt)
         self._sight.step(t, sensed.scan, sensed.correction, self._wheels.travelled)
 

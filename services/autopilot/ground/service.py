@@ -111,7 +111,8 @@ class GroundAutopilot(Service):
         """One cycle at ``t`` [s, simulation]: requests, failsafes, mission, command multiplexer, wheel speeds."""
         self._handle_stop_all(t, now.stop)
         self._here = place(now.pose, yaw_of(now.pose.pose.orientation)) if now.pose is not None else None
-        self._watch(t, GroundSensorInputs(self._here, now.link, now.imu, now.ticks, now.scan, now.correction, now.battery))
+        speed = now.odometry.linear_velocity.x if now.odometry is not None else None
+        self._watch(t, GroundSensorInputs(self._here, speed, now.link, now.imu, now.ticks, now.scan, now.correction, now.battery))
         out = self.Outputs()
         out.arm = [self._arm(t, r) for r in now.arm]
         out.set_mode = [self._set_mode(t, r) for r in now.set_mode]

@@ -1,9 +1,9 @@
 """Wheels, inertial unit, satellites and the map's correction -> odometry, pose and motion of a ground vehicle, 50 times a second."""
 
-from math import isfinite
+from math import inf, isfinite
 
 from schemas import topics
-from schemas.messages import EstimateQuality, Event, FrameTransform, Gnss, Imu, NavState, Odometry, PoseInFrame, WheelTicks
+from schemas.messages import EstimateQuality, Event, FrameTransform, Gnss, Imu, MapFix, NavState, Odometry, PoseInFrame, WheelTicks
 from services.slam.odometry import messages
 from services.slam.odometry.readings import Readings, satellite_fix
 from uvf.estimation.odometry.calibration import Scales, SegmentMaker, WheelCalibration
@@ -21,6 +21,7 @@ from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import planar_pose, pose2_of, pose2_of_frame, seconds, stamp
 from uvf.sensors.sampling import Due
 
+FORGOTTEN = 2.0  # s without a match, after which nobody contradicts the wheels
 MAX_PREDICTION = 0.1  # s, wheel data older than this is not extrapolated further
 
 LEFT, RIGHT, BIAS, SCALES = "left_ticks", "right_ticks", "gyro_bias", "scales"
@@ -35,11 +36,12 @@ class OdometryService(Service):
     given_up = "the vehicle stands where it would drive by itself"
 
     class Inputs(Reads):
-        """Encoder ticks, IMU samples, the map's correction, and GNSS fixes."""
+        """Encoder ticks, IMU samples, the map's correction, where scans were matched, and GNSS fixes."""
 
         wheels: WheelTicks = topic(topics.WHEELS)
         imu: list[Imu] = optional(every(topics.IMU))
         correction: FrameTransform | None = optional(topics.TF_MAP)
+        fix: MapFix | None = optional(topics.MAP_POSE)
         gnss: list[Gnss] | None = optional(every(topics.GNSS))
 
     class Outputs(Writes):
@@ -80,7 +82,7 @@ class OdometryService(Service):
             )
         self._scales, self._applied = Scales(), Scales()
         self._begin_calibration()
-        self._matched, self._episodes = MatchedMotion(), Episodes()
+        self._matched, self._matched_at, self._episodes = MatchedMotion(), -inf, Episodes()
         self._unseen: Unseen | None = None
         self._driven = 0.0
         self._quality_due = Due(topics.QUALITY.hz)
@@ -96,6 +98,10 @@ class OdometryService(Service):
                 events.append(messages.slipping(t, episode.cause))
         if now.correction is not None:
             self._correct(now.correction)
+        if now.fix is not None:
+            self._compare(now.fix)
+        if t - self._matched_at > FORGOTTEN:
+            self._unseen = None
         if self._satellites is not None:
             self._satellites.take([satellite_fix(m) for m in now.gnss or []], self._filter.pose)
         events += self._calibrate(t)
@@ -149,6 +155,7 @@ class OdometryService(Service):
         for drive in self._drives:
             drive.is_unseen = self._unseen is not None
             drive.step(step)
+        self._matched.roll(t, (step.left + step.right) / 2)
         if self._satellites is not None:
             self._satellites.note(t, self._filter.pose)
         slipping = self._episodes.active or self._filter.doubt is not None
@@ -161,14 +168,21 @@ class OdometryService(Service):
         pose = self._filter.pose
         if not self._map.correct(newest, self._filter.covariance):
             return
-        self._unseen = self._matched.compare(t, pose, newest)
-        if self._unseen is not None:
-            for drive in self._drives:
-                drive.see(self._unseen.speed)
         self._segments.match(self._map.map_from(pose))
         if self._satellites is not None:
             drift = self.params.map_sigma + self.params.map_drift * self._driven**0.5
             self._satellites.mapped(t, self._map.world_from(pose), drift)
+
+    def _compare(self, fix: MapFix) -> None:
+        """Whether a match of a scan shows the motion that the wheels tell of."""
+        t, matched = seconds(fix.timestamp), Pose2(fix.x, fix.y, fix.yaw)
+        if t == self._matched_at or not all(map(isfinite, matched)):
+            return
+        self._matched_at = t
+        self._unseen = self._matched.compare(t, matched)
+        if self._unseen is not None:
+            for drive in self._drives:
+                drive.see(self._unseen.speed)
 
     def _begin_calibration(self) -> None:
         """On top of the scales in force."""

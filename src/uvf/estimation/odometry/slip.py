@@ -1,8 +1,10 @@
 """Wheels that slip: they disagree with gyroscope and accelerometer, or with the motion that the scans see."""
 
 from collections import deque
-from math import hypot, sqrt
+from math import copysign, cos, inf, sin, sqrt
 from typing import NamedTuple
+
+import numpy as np
 
 from uvf.maths.se2 import Pose2, compose, inverse
 
@@ -10,7 +12,8 @@ ONE_GATE, MEAN_GATE = 16.0, 25.0  # normalised innovation squared of a step, and
 LEAST = 0.02  # m/s, a smaller difference is none
 MEMORY = 0.3  # s, of the running mean
 BEGINS, ENDS = 0.1, 1.0  # s of doubt after which an episode begins, and without it after which it ends
-WINDOW, LEAST_WAY = 2.0, 0.15  # s and m: what the odometry went and the scans did not see
+WINDOW, LEAST_WAY = 2.0, 0.15  # s and m: what the wheels rolled and the scans did not see
+BLUR, STANDS = 0.03, 1e-3  # m: by which matches of scans vary; of wheels that do not turn
 
 
 class WheelWatch:
@@ -61,7 +64,7 @@ class Episodes:
 
 
 class Unseen(NamedTuple):
-    """Motion by odometry that the scans do not see."""
+    """Motion by the wheels that the scans do not see."""
 
     cause: str
     speed: float
@@ -69,32 +72,51 @@ class Unseen(NamedTuple):
 
 
 class MatchedMotion:
-    """Compares the motion by odometry with that on the map over the last ``WINDOW``.
+    """Compares the way of the wheels with the motion between the poses that scans were matched at, over the last ``WINDOW``.
 
-    A map that is corrected by a loop looks the same when it moves the vehicle back by ``LEAST_WAY`` in that time: the odometry is then
-    believed less for a moment, which does no harm.
+    Between two matches, slip takes back no more than what the wheels have rolled: what a closed loop moves the vehicle by is no slip.
     """
 
     def __init__(self) -> None:
-        self._track: deque[tuple[float, Pose2, Pose2]] = deque()
+        self._rolled: deque[tuple[float, float]] = deque([(-inf, 0.0)])  # s, and signed way since the start [m]
+        self._last: tuple[float, float, Pose2] | None = None
+        self._parts: deque[tuple[float, float, float]] = deque()  # end [s], signed way by the wheels [m], and what is missing of it [m]
 
-    def compare(self, t: float, odom_from_base: Pose2, map_from_odom: Pose2) -> Unseen | None:
-        """Motion that the scans do not see, None if they agree; called at each new correction, stamped ``t`` [s]."""
-        if self._track and t <= self._track[-1][0]:
-            self._track.clear()
-        self._track.append((t, odom_from_base, compose(map_from_odom, odom_from_base)))
-        while t - self._track[0][0] > WINDOW + 1e-6:
-            self._track.popleft()
-        begin, odom, in_map = self._track[0]
-        if t - begin < 0.9 * WINDOW:
+    def roll(self, t: float, way: float) -> None:
+        """Adds what both wheels have rolled on average until ``t`` [s] since the last call; way: m, negative backwards."""
+        if t <= self._rolled[-1][0]:
+            self._rolled.clear()
+        self._rolled.append((t, (self._rolled[-1][1] if self._rolled else 0.0) + way))
+        while t - self._rolled[0][0] > WINDOW:
+            self._rolled.popleft()
+
+    def compare(self, t: float, map_from_base: Pose2) -> Unseen | None:
+        """Motion that the scans do not see, None if they agree; called at each match, of a scan of ``t`` [s]."""
+        times, ways = zip(*self._rolled, strict=True)
+        if not times[0] <= t <= times[-1]:
             return None
-        way, seen = (compose(inverse(a), b) for a, b in ((odom, odom_from_base), (in_map, self._track[-1][2])))
-        length = hypot(way.x, way.y)
-        along = (way.x * seen.x + way.y * seen.y) / max(length, 1e-9)
-        if length - along < LEAST_WAY:
+        rolled = float(np.interp(t, times, ways))
+        last, self._last = self._last, (t, rolled, map_from_base)
+        if last is None or not 0.0 < t - last[0] <= WINDOW:
+            self._parts.clear()
             return None
-        forward = along if way.x > 0.0 else -along
-        return Unseen(f"odometry went {length:.2f} m in {t - begin:.1f} s, the scans saw {along:.2f} m", forward / (t - begin))
+        way, seen = rolled - last[1], compose(inverse(last[2]), map_from_base)
+        ahead = seen.x * cos(seen.yaw / 2) + seen.y * sin(seen.yaw / 2)  # along the chord of an arc
+        most = abs(way) + BLUR
+        missing = min(max(copysign(1.0, way) * (way - ahead), -most), most) if abs(way) > STANDS else 0.0
+        self._parts.append((t, way, missing))
+        return self._unseen(t)
+
+    def _unseen(self, t: float) -> Unseen | None:
+        while self._parts and t - self._parts[0][0] > WINDOW - 1e-6:
+            self._parts.popleft()
+        if len(self._parts) < 2 or t - self._parts[0][0] < 0.8 * WINDOW:
+            return None
+        length, missing = sum(abs(way) for _, way, _ in self._parts), sum(part for _, _, part in self._parts)
+        if missing < LEAST_WAY:
+            return None
+        seen, ahead = length - missing, copysign(1.0, sum(way for _, way, _ in self._parts))
+        return Unseen(f"the wheels rolled {length:.2f} m in {WINDOW:.1f} s, the scans saw {seen:.2f} m", ahead * seen / WINDOW)
 
 
 def wheel_cause(name: str, told: float, expected: float) -> str:

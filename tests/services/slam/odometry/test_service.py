@@ -4,7 +4,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from schemas.messages import FrameTransform, Imu, KeyValuePair, Odometry, Vector3, WheelTicks
+from schemas.messages import FrameTransform, Imu, KeyValuePair, MapFix, Odometry, Vector3, WheelTicks
 from services.slam.odometry.service import SCALES, OdometryService
 from tests.estimation.odometry.test_satellites import GOOD, TANGENT, fix_at
 from tests.runtime.stepping import recall, stepped
@@ -33,8 +33,11 @@ class Bench:
         self.events, self.said = [], []
         self.rng = np.random.default_rng(1)
 
-    def drive(self, duration, twist, *, spin=0.0, corrected=None, fixes=False):
-        """twist: of the vehicle; spin: m/s that both wheels roll on top; corrected: map_from_odom by the odometry's pose."""
+    def drive(self, duration, twist, *, spin=0.0, corrected=None, fixes=False, matched=None):
+        """twist: of the vehicle; spin: m/s that both wheels roll on top; corrected: map_from_odom by the odometry's pose.
+
+        matched: where scans are matched, by the true pose.
+        """
         for _ in range(round(duration / DT)):
             self.t += DT
             mean = Twist(*((a + b) / 2 for a, b in zip(self.before, twist, strict=True)))
@@ -55,7 +58,8 @@ class Bench:
             told = self.said[-1]["odometry"] if self.said else None
             correction = corrected(self, told) if corrected and told else None
             fix = [fix_at(self.t - DT, compose(START, self.pose), mean, self.rng)] if fixes and round(self.t / DT) % 10 == 0 else []
-            self.said.append(stepped(self.service, self.t, wheels=wheels, imu=[imu], correction=correction, gnss=fix))
+            match = MapFix(timestamp=stamped, **matched(self.pose)._asdict()) if matched and round(self.t / DT) % 10 == 0 else None
+            self.said.append(stepped(self.service, self.t, wheels=wheels, imu=[imu], correction=correction, gnss=fix, fix=match))
             self.events += self.said[-1].get("events", [])
         return self
 
@@ -98,19 +102,36 @@ def test_wheels_that_grip_are_not_accused():
     assert bench.events == []
 
 
+def test_a_closed_loop_moves_the_matches_and_neither_the_odometry_nor_its_trust_in_the_wheels():
+    """By half a metre; the correction glides there at 0.1 m/s."""
+    offset = [0.0, 0.0]
+
+    def gliding(bench, told):
+        offset[1] = min(offset[1] + 0.1 * DT, offset[0])
+        return FrameTransform(timestamp=stamp(bench.t), translation=Vector3(x=-offset[1]), rotation=quaternion(from_euler(0.0, 0.0, 0.0)))
+
+    def matched(pose):
+        return Pose2(pose.x - offset[0], pose.y, pose.yaw)
+
+    bench = Bench().drive(1.0, Twist(0.0, 0.0), corrected=gliding, matched=matched)
+    bench.drive(4.0, Twist(0.2, 0.0), corrected=gliding, matched=matched)
+    offset[0] = 0.5
+    bench.drive(6.0, Twist(0.2, 0.0), corrected=gliding, matched=matched)
+    assert bench.events == []
+    assert min(out["odometry"].linear_velocity.x for out in bench.said[-300:]) > 0.19
+    assert bench.newest["odometry"].pose.position.x == pytest.approx(bench.pose.x, abs=0.01)
+
+
 def test_motion_that_the_scans_do_not_see_is_no_motion():
     """A vehicle that has lost its inertial unit and spins against a wall."""
-    service, t, x = OdometryService("v", BURGER, START, OdometryParams()), 0.0, 0.0
-    events = []
+    service, t, events = OdometryService("v", BURGER, START, OdometryParams()), 0.0, []
     for k in range(500):
         t += DT
         ticks = round(0.3 * t / BURGER.ground.wheel_radius / TICK)
         wheels = WheelTicks(timestamp=stamp(t - DT), left=ticks, right=ticks, radians_per_tick=TICK)
-        correction = FrameTransform(timestamp=stamp(t), translation=Vector3(x=-x), rotation=quaternion(from_euler(0.0, 0.0, 0.0)))
-        out = stepped(service, t, wheels=wheels, imu=[], correction=correction if k % 5 == 0 else None)
-        x = out["odometry"].pose.position.x
+        out = stepped(service, t, wheels=wheels, imu=[], fix=MapFix(timestamp=stamp(t - DT)) if k % 10 == 0 else None)
         events += out.get("events", [])
-    assert [e.cause.startswith("odometry went") for e in events] == [True]
+    assert [e.cause.startswith("the wheels rolled") for e in events] == [True]
     assert out["odometry"].pose_covariance[0] > 0.01
 
 
