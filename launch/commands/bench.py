@@ -38,7 +38,7 @@ def run_groups(names: Sequence[str], data: Path | None, json_file: Path | None, 
         for line in verdicts(group, rows):
             console.print(line, markup=False, highlight=False)
         if write:
-            _write(group, rows, before)
+            _write(group, wanted[group], rows, before)
     if json_file:
         json_file.write_text(json.dumps(measured, indent=1))
 
@@ -53,10 +53,11 @@ def _wanted(names: Sequence[str]) -> dict[str, list[str]]:
     return wanted
 
 
-def _write(group: str, rows: Figures, facts: BenchmarkFacts) -> None:
+def _write(group: str, cases: Sequence[str], rows: Figures, facts: BenchmarkFacts) -> None:
+    """Some cases of a group have a section of their own, beside that of the whole group."""
     page = RESULTS.read_text(encoding="utf-8") if RESULTS.exists() else "# Results\n"
     lines = [facts.line(), *notes_of(group), *verdicts(group, rows)]
-    RESULTS.write_text(replace_section(page, group, rows, lines), encoding="utf-8")
+    RESULTS.write_text(replace_section(page, " ".join([group, *cases]), rows, lines), encoding="utf-8")
 
 
 def _chosen(group: str, wanted: Sequence[str], data: Path | None, selection: Selection) -> dict[str, Case]:

@@ -109,13 +109,13 @@ def _verdict(goal: BenchmarkGoal, value: float) -> str:
     return "met" if met else "not met"
 
 
-def replace_section(text: str, group: str, figures: Rows, lines: Sequence[str]) -> str:
-    """The results page with one group's section renewed; lines: the list above its table."""
+def replace_section(text: str, title: str, figures: Rows, lines: Sequence[str]) -> str:
+    """The results page with the section of that title renewed, or added; lines: the list above its table."""
     columns = list(dict.fromkeys(metric for row in figures.values() for metric in row))
-    table = [f"| {group} | {' | '.join(columns)} |", "|---" * (len(columns) + 1) + "|"]
+    table = [f"| {title} | {' | '.join(columns)} |", "|---" * (len(columns) + 1) + "|"]
     table += [f"| {n} | {' | '.join(f'{row[c]:.4g}' if c in row else '' for c in columns)} |" for n, row in figures.items()]
-    section = f"\n## {group}\n\n" + "\n".join([*(f"* {line}" for line in lines), "", *table]) + "\n"
-    before, found, after = text.partition(f"\n## {group}\n")
+    section = f"\n## {title}\n\n" + "\n".join([*(f"* {line}" for line in lines), "", *table]) + "\n"
+    before, found, after = text.partition(f"\n## {title}\n")
     rest = after.partition("\n## ")
     tail = f"\n## {rest[2]}" if found and rest[1] else ""
     return before.rstrip("\n") + "\n" + section + tail

@@ -58,6 +58,13 @@ def test_a_renewed_section_leaves_the_others_as_they_were():
     assert "* now" in again and "| x | 3 |" in again and "| y | 2 |" in again and "| x | 1 |" not in again
 
 
+def test_some_cases_of_a_group_leave_the_figures_of_the_others(measured, monkeypatch, tmp_path):
+    monkeypatch.setattr(bench, "RESULTS", tmp_path / "results.md")
+    for names in (["bus"], ["bus", "one"], ["bus", "two"], ["bus", "one"]):
+        bench.run_groups(names, None, None, True)
+    assert re.findall(r"(?m)^## .*", bench.RESULTS.read_text()) == ["## bus", "## bus one", "## bus two"]
+
+
 def test_goals_are_met_or_not_met(monkeypatch):
     goal = BenchmarkGoal(["x", "y", "gone"], "m", "docs/x.md", at_most=2.0, at_least=0.5)
     monkeypatch.setattr(bench_page, "_stated", lambda group: bench_page.Stated([goal]))
