@@ -62,12 +62,14 @@ class NavReport(_message.Message):
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., number: _Optional[int] = ..., drive: _Optional[_Union[NavReport.Drive, str]] = ..., done: bool = ..., impossible: bool = ...) -> None: ...
 
 class PreviewRequest(_message.Message):
-    __slots__ = ("position", "source")
+    __slots__ = ("position", "source", "start")
     POSITION_FIELD_NUMBER: _ClassVar[int]
     SOURCE_FIELD_NUMBER: _ClassVar[int]
+    START_FIELD_NUMBER: _ClassVar[int]
     position: _Vector3_pb2.Vector3
     source: str
-    def __init__(self, position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., source: _Optional[str] = ...) -> None: ...
+    start: _Vector3_pb2.Vector3
+    def __init__(self, position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., source: _Optional[str] = ..., start: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ...) -> None: ...
 
 class PreviewReply(_message.Message):
     __slots__ = ("accepted", "reason", "poses", "length", "duration", "clearance")

@@ -104,7 +104,7 @@ class ErrandBook:
         return ""
 
     def _goal_refusal(self, here: Pose2, wanted: GoalRequest) -> str:
-        return NO_HEADING if isinf(wanted.yaw) else self._desk.refusal(here, wanted.position)
+        return NO_HEADING if isinf(wanted.yaw) else self._desk.refusal(here[:2], wanted.position)
 
     def _route_refusal(self, here: Pose2, wanted: RouteRequest) -> str:
         if wanted.kind not in KINDS:
@@ -114,7 +114,7 @@ class ErrandBook:
         if wanted.HasField("yaw") and not isfinite(wanted.yaw):
             return "the heading is no number; give it in rad, or leave it out for any"
         for k, place in enumerate(wanted.places, start=1):
-            if reason := self._desk.refusal(here, place):
+            if reason := self._desk.refusal(here[:2], place):
                 return f"place {k} of {len(wanted.places)}: {reason}"
         return ""
 

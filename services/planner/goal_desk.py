@@ -28,20 +28,23 @@ class GoalDesk:
         x, y, _ = compose(self._map_from_world, Pose2(point[0], point[1], 0.0))
         return (x, y)
 
-    def refusal(self, here: Pose2, place: Vector3) -> str:
+    def refusal(self, here: Point, place: Vector3) -> str:
         """Why a vehicle that is at ``here`` [map] cannot be sent to a place [m, world]; "" if it can."""
         point = place.x, place.y
-        return self._beyond(point) or self._planner.refusal(here[:2], self.in_map(point))
+        return self._beyond(point) or self._planner.refusal(here, self.in_map(point))
 
     def previews(self, here: Pose2, wanted: list[PreviewRequest]) -> list[PreviewReply]:
-        """The ways as they would be driven now, or why there is none."""
+        """The ways as they would be driven now, or why there is none; from ``here`` [map] where no start is given."""
         busy = PreviewReply(reason=f"more than {PREVIEWS} at once; ask again")
-        return [self._preview(here, request) for request in wanted[:PREVIEWS]] + [busy] * (len(wanted) - PREVIEWS)
+        return [self._preview(here[:2], request) for request in wanted[:PREVIEWS]] + [busy] * (len(wanted) - PREVIEWS)
 
-    def _preview(self, here: Pose2, wanted: PreviewRequest) -> PreviewReply:
-        if reason := self.refusal(here, wanted.position):
+    def _preview(self, here: Point, wanted: PreviewRequest) -> PreviewReply:
+        start = self.in_map((wanted.start.x, wanted.start.y)) if wanted.HasField("start") else here
+        if wanted.HasField("start") and (reason := self._planner.misplaced(start, "start")):
             return PreviewReply(reason=reason)
-        planned = self._planner.plan(here[:2], self.in_map((wanted.position.x, wanted.position.y)))
+        if reason := self.refusal(start, wanted.position):
+            return PreviewReply(reason=reason)
+        planned = self._planner.plan(start, self.in_map((wanted.position.x, wanted.position.y)))
         costs = self._planner.costs
         if planned.path is None or costs is None:
             return PreviewReply(reason=planned.reason)

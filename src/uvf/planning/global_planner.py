@@ -151,25 +151,32 @@ class GlobalPlanner:
             self._ways = cell, GridSearch(self._leaving(self.costs, cell).values, self._factors(False)).cost_to_go(cell)
         return self._ways[1]
 
-    def refusal(self, start: Point, goal: Point) -> str:
-        """Why no path leads from ``start`` to ``goal`` over known ground; empty if one does."""
+    def misplaced(self, point: Point, name: str = "goal") -> str:
+        """Why the vehicle cannot stand at ``point`` on known ground; empty if it can. name: what the point is called."""
         costs = self.costs
         if costs is None:
             return self.missing
-        if not _is_place(goal):
-            return NO_PLACE
-        cell = costs.cell(*goal)
+        if not _is_place(point):
+            return f"the {name} is not a place: its coordinates must be finite"
+        cell = costs.cell(*point)
         if not costs.holds(cell):
-            return "the goal lies outside the map"
+            return f"the {name} lies outside the map"
         if costs.unknown[cell]:
-            return "the goal lies on ground not seen yet"
+            return f"the {name} lies on ground not seen yet"
         if not costs.free[cell]:
-            return "the goal lies in an obstacle"
+            return f"the {name} lies in an obstacle"
         if costs.values[cell] >= INSCRIBED:
-            return f"the goal is {costs.clearance_at(cell):.2f} m from an obstacle, {self._needed:.2f} m are needed"
-        ways = self.ways(start)
-        if ways is None:
+            return f"the {name} is {costs.clearance_at(cell):.2f} m from an obstacle, {self._needed:.2f} m are needed"
+        return ""
+
+    def refusal(self, start: Point, goal: Point) -> str:
+        """Why no path leads from ``start`` to ``goal`` over known ground; empty if one does."""
+        if reason := self.misplaced(goal):
+            return reason
+        costs, ways = self.costs, self.ways(start)
+        if costs is None or ways is None:
             return OUTSIDE
+        cell = costs.cell(*goal)
         if not np.isfinite(ways.cost[cell]):
             return self.shut_in(start) or NO_WAY
         if ways.cost[cell] * costs.resolution <= FARTHEST:  # a way costs no less than its length

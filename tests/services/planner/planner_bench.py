@@ -81,6 +81,8 @@ def asked(x, y, yaw=float("nan")):
     return GoalRequest(position=Vector3(x=position[0], y=position[1]), yaw=yaw, source="test")
 
 
-def preview(x, y):
+def preview(x, y, start=None):
     position = world(x, y)
-    return PreviewRequest(position=Vector3(x=position[0], y=position[1]), source="test")
+    begin = None if start is None else world(*start)
+    begin = None if begin is None else Vector3(x=begin[0], y=begin[1])
+    return PreviewRequest(position=Vector3(x=position[0], y=position[1]), start=begin, source="test")

@@ -85,6 +85,20 @@ def test_a_preview_tells_the_way_without_driving_it():
     assert (bad.accepted, bad.reason, len(bad.poses)) == (False, "the goal lies in an obstacle", 0)
 
 
+def test_a_preview_may_begin_elsewhere():
+    bench = Bench().step()
+    places = ((3.0, 1.0), (-50.0, 1.0), (float("nan"), 1.0), (0.07, 1.0))
+    bench.step(preview=[preview(3.0, 2.0, start) for start in places])
+    good, outside, nowhere, wall = bench.said["preview"]
+    assert good.length == pytest.approx(1.0, abs=0.1)
+    assert (good.poses[0].position.x, good.poses[0].position.y) == pytest.approx(world(3.0, 1.0))
+    assert [answer.reason for answer in (outside, nowhere, wall)] == [
+        "the start lies outside the map",
+        "the start is not a place: its coordinates must be finite",
+        "the start lies in an obstacle",
+    ]
+
+
 def test_a_flood_of_previews_is_answered_in_part():
     bench = Bench().step().step(preview=[preview(2.0, 2.0)] * 50)
     answers = bench.said["preview"]
