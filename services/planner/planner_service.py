@@ -1,9 +1,6 @@
 """Map, pose and job -> what the tracker is to do, four times a second: a path to follow, or a recovery."""
 
-from dataclasses import replace
 from math import hypot, inf, isfinite, isinf
-
-import numpy as np
 
 from schemas.messages import (
     CancelRequest,
@@ -19,24 +16,22 @@ from services.planner import interface
 from services.planner.directives import directive_message, path_message, report_of
 from services.planner.errands import ErrandBook
 from services.planner.exploration_goals import ExplorationGoals
+from services.planner.giving_way import GivingWay
 from services.planner.goal_desk import GoalDesk
 from services.planner.jobs import IDLE, Job, Orders, ReturnPoints, choose, home_of, mission_target
 from services.planner.obstacle_sensors import OtherReadings
 from services.planner.params import PlannerParams
 from services.planner.planned_vehicle import PlannedVehicle
 from services.planner.planning_ground import PlanningGround
-from services.planner.team import exploring, places, travellers
+from services.planner.team import Team
 from uvf.maths.rotations import wrap
-from uvf.maths.se2 import Pose2, compose, inverse
+from uvf.maths.se2 import Pose2, compose
 from uvf.planning.costmap.inflation import Inflation
-from uvf.planning.exploration import OthersGoal
 from uvf.planning.frontiers import FrontierChoice, FrontierWeights
 from uvf.planning.global_planner import NO_PLACE, GlobalPlanner, PlannedBody
-from uvf.planning.navigation.directive import Action, Directive
+from uvf.planning.navigation.directive import Directive
 from uvf.planning.navigation.navigator import NavigationGoal, Navigator, NavigatorSettings, Status
 from uvf.planning.navigation.progress import ProgressSettings
-from uvf.planning.navigation.right_of_way import AHEAD, Traveller, give_way
-from uvf.planning.smoothing import from_place, way_along
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
 
@@ -44,8 +39,6 @@ Point = tuple[float, float]
 
 FRONTIER_VIEW = 0.4  # m from a frontier, from where it is seen well enough
 EXPLORING_RECOVERIES = 2  # before another goal is chosen: there are more of them
-BLURRED = 0.1  # m by which the map may show a vehicle of the team elsewhere
-ROOM = 0.1  # m between two vehicles that pass each other
 MOVED = 0.2  # m of the place behind who is followed, from which on the way there is planned anew
 AGAIN = 10.0  # s after which a place of the mission, or home, is tried again where nobody has changed the mode
 PUSHED = 3.0  # times the tolerance from a place that was reached, from where it is driven to again
@@ -90,9 +83,8 @@ class PlannerService(Service):
         self._try_at = inf
         """When a place that was given up is tried again."""
         self._told = 0
-        self._others: list[OthersGoal] = []
-        self._waits_for = ""
-        """The vehicle that comes first through a narrow passage."""
+        self._team = Team(vehicle.name, self._footprint.circumscribed_radius, world_from_map)
+        self._right = GivingWay(vehicle.name, self._footprint.circumscribed_radius, self._ground.routes)
         self._asks: list[ModeRequest] = []
         self._events: list[Event] = []
         self._desk = GoalDesk(self._planner, world_from_map, vehicle.speed)
@@ -107,8 +99,8 @@ class PlannerService(Service):
         self._fit()
         self._ground.keep_out(now.keep_out)
         changed = self._ground.look(t, now.map, now.scan, OtherReadings(now.depth, now.info, now.sonar, now.contact))
-        self._book.team = places(self._vehicle.name, now.team)
-        self._others = exploring(self._vehicle.name, now.team_nav, self._desk.in_map)
+        self._team.hear(now.team, now.team_nav, now.team_path)
+        self._book.team = self._team.places
         goal_replies, goal = self._book.take_goals(here, now.goal, now.status)
         route_replies, route = self._book.take_routes(here, now.route, now.status)
         follow_replies, follow = self._book.take_follows(now.follow, now.status)
@@ -123,10 +115,10 @@ class PlannerService(Service):
             self._begin(t, job)
         cancel_replies = [self._cancel(t, request) for request in now.cancel]
         self._aim(t, here, changed)
-        if now.status is None or now.status.command_source != "planner" or self._waits_for:
+        if now.status is None or now.status.command_source != "planner" or self._right.waits_for:
             self._navigator.pause(t, here)
         directive = self._navigator.step(t, here, report_of(now.report))
-        directive = self._give_way(t, directive, now)
+        directive = self._give_way(t, directive, here)
         self._ground.heed(directive)
         self._follow_up(t)
         self._tell_recoveries()
@@ -185,26 +177,13 @@ class PlannerService(Service):
         if self._planner.fit(self._body):
             self._navigator.replan()
 
-    def _give_way(self, t: float, directive: Directive, now: interface.Inputs) -> Directive:
+    def _give_way(self, t: float, directive: Directive, here: Pose2) -> Directive:
         """The directive as far as it may be followed now, for another vehicle comes through a passage that is too narrow for two."""
-        here, waited_for, self._waits_for = self._ground.here, self._waits_for, ""
-        if directive.action != Action.FOLLOW or here is None:
-            return directive
-        others = travellers(now.team_path, self._book.team, inverse(self._world_from_map))
-        if not others:
-            return directive
-        own, passed = from_place(directive.path, here[:2])
-        own = own[way_along(own) <= AHEAD]
-        team = np.array([self._desk.in_map(place) for place in self._book.team.values()])
-        radius = self._footprint.circumscribed_radius
-        clearance = self._ground.routes.map_clearance(own, team, radius + BLURRED)
-        wait = give_way(Traveller(self._vehicle.name, own), clearance, others, 2.0 * radius + ROOM)
-        if wait is None:
-            return directive
-        self._waits_for = wait.for_whom
-        if wait.for_whom != waited_for:
-            self._tell(t, f"waits for {wait.for_whom}", "it comes first through a narrow passage")
-        return replace(directive, until=passed + wait.until)
+        waited_for = self._right.waits_for
+        heeded = self._right.heed(directive, here, self._team)
+        if self._right.waits_for not in ("", waited_for):
+            self._tell(t, f"waits for {self._right.waits_for}", "it comes first through a narrow passage")
+        return heeded
 
     def _tell_taken(self, t: float, what: str, sources: list[str]) -> None:
         """A new errand; asked for anew, the same one is begun anew."""
@@ -301,7 +280,7 @@ class PlannerService(Service):
 
     def _aim_exploring(self, t: float, here: Pose2) -> None:
         was_shut_in = self._exploration.is_shut_in
-        target, reason = self._exploration.choose(t, here[:2], self._others)
+        target, reason = self._exploration.choose(t, here[:2], self._team.goals)
         if self._exploration.is_shut_in and not was_shut_in:
             self._tell(t, "explore: nothing can be planned", reason, Event.WARNING)
         if target is None:
@@ -349,6 +328,7 @@ class PlannerService(Service):
         )
         status.state, status.recoveries = self._state(told.status), told.recoveries
         self._book.show(status)
+        status.radius = self._footprint.circumscribed_radius
         if self._target is not None:
             x, y, _ = compose(self._world_from_map, Pose2(self._target[0], self._target[1], 0.0))
             status.goal.x, status.goal.y = x, y
@@ -360,7 +340,7 @@ class PlannerService(Service):
 
     @property
     def _why(self) -> str:
-        return f"waits for {self._waits_for} at a narrow passage" if self._waits_for else self._reason
+        return f"waits for {self._right.waits_for} at a narrow passage" if self._right.waits_for else self._reason
 
     def _state(self, status: Status) -> NavStatus.State:
         if self._ended_at is not None:

@@ -1,44 +1,69 @@
 """The rest of the team, as the planner of one vehicle hears of it."""
 
-from collections.abc import Callable
 from math import isfinite
 
 import numpy as np
+from numpy.typing import NDArray
 
 from schemas.messages import NavStatus, PoseInFrame, PosesInFrame
-from uvf.maths.se2 import Pose2, transform
+from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.planning.exploration import OthersGoal
 from uvf.planning.navigation.right_of_way import Traveller
 from uvf.planning.smoothing import from_place
 
 Point = tuple[float, float]
-InMap = Callable[[Point], Point]
+Floats = NDArray[np.float64]
 
 MOST = 2000  # points of another vehicle's path that are looked at
+LARGEST = 10.0  # m, of the radius that a vehicle may say it has
+AT_IT = (NavStatus.DRIVING, NavStatus.RECOVERING)
 
 
-def places(own: str, poses: dict[str, PoseInFrame]) -> dict[str, Point]:
-    """Where the others are [m, world]; without those whose place is none."""
-    found = {name: (said.pose.position.x, said.pose.position.y) for name, said in poses.items() if name != own}
-    return {name: place for name, place in found.items() if isfinite(place[0]) and isfinite(place[1])}
+class Team:
+    """The others, of a vehicle of that name and circumscribed radius [m]. Who does not say its own radius is taken for as large."""
 
+    def __init__(self, own: str, radius: float, world_from_map: Pose2) -> None:
+        self.places: dict[str, Point] = {}
+        """Where they are [m, world]; without those whose place is none."""
+        self._own, self._radius, self._map_from_world = own, radius, inverse(world_from_map)
+        self._said: dict[str, NavStatus] = {}
+        self._paths: dict[str, PosesInFrame] = {}
 
-def exploring(own: str, said: dict[str, NavStatus], in_map: InMap) -> list[OthersGoal]:
-    """Where the others go to explore; among two that want the same, the one whose name comes first has it."""
-    at_it = (NavStatus.DRIVING, NavStatus.RECOVERING)
-    return [
-        OthersGoal(in_map((status.goal.x, status.goal.y)), name < own)
-        for name, status in said.items()
-        if name != own and status.job == "explore" and status.state in at_it
-    ]
+    def hear(self, poses: dict[str, PoseInFrame], said: dict[str, NavStatus], paths: dict[str, PosesInFrame]) -> None:
+        """What they publish now, by name; the vehicle's own are left out."""
+        found = {name: (pose.pose.position.x, pose.pose.position.y) for name, pose in poses.items() if name != self._own}
+        self.places = {name: place for name, place in sorted(found.items()) if all(map(isfinite, place))}
+        self._said, self._paths = said, paths
 
+    @property
+    def goals(self) -> list[OthersGoal]:
+        """Where they go to explore [m, map]; among two that want the same, the one whose name comes first has it."""
+        exploring = {name: said.goal for name, said in self._said.items() if said.job == "explore" and said.state in AT_IT}
+        return [
+            OthersGoal(self._in_map(np.array((goal.x, goal.y))), name < self._own) for name, goal in exploring.items() if name != self._own
+        ]
 
-def travellers(paths: dict[str, PosesInFrame], team: dict[str, Point], map_from_world: Pose2) -> list[Traveller]:
-    """The paths of the others from where they are on, in the map frame."""
-    found = []
-    for name, message in sorted(paths.items()):
-        if name in team and message.poses:
-            points = np.array([(pose.position.x, pose.position.y) for pose in message.poses[:MOST]])
-            rest, _ = from_place(points[np.isfinite(points).all(axis=1)], team[name])
-            found.append(Traveller(name, transform(map_from_world, rest)))
-    return found
+    @property
+    def travellers(self) -> list[Traveller]:
+        """Those that have a path, with it from where they are on [m, map]."""
+        found = []
+        for name, place in self.places.items():
+            path = self._paths.get(name)
+            if path is not None and path.poses:
+                points = np.array([(pose.position.x, pose.position.y) for pose in path.poses[:MOST]])
+                rest, _ = from_place(points[np.isfinite(points).all(axis=1)], place)
+                found.append(Traveller(name, transform(self._map_from_world, rest), self._radius_of(name)))
+        return found
+
+    @property
+    def discs(self) -> Floats:
+        """(n, 3) what they cover: x, y, radius [m, map]."""
+        return np.array([(*self._in_map(np.array(place)), self._radius_of(name)) for name, place in self.places.items()]).reshape(-1, 3)
+
+    def _radius_of(self, name: str) -> float:
+        said = self._said.get(name)
+        return said.radius if said is not None and 0.0 < said.radius <= LARGEST else self._radius
+
+    def _in_map(self, place: Floats) -> Point:
+        x, y = transform(self._map_from_world, place[None])[0].tolist()
+        return x, y

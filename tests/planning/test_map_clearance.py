@@ -27,7 +27,7 @@ def routes(*discs):
 
 
 def test_clearance_is_the_distance_to_what_is_drawn():
-    found = routes((1.5, 4.1, 0.2)).map_clearance(PATH, NOBODY, 0.2)
+    found = routes((1.5, 4.1, 0.2)).map_clearance(PATH, NOBODY)
     true = np.hypot(PATH[:, 0] - 1.5, 0.6) - 0.2
     near = true < AROUND
     assert np.abs(found - true)[near].max() < 1.5 * CELL
@@ -36,12 +36,12 @@ def test_clearance_is_the_distance_to_what_is_drawn():
 
 def test_a_vehicle_of_the_team_that_the_map_shows_is_no_obstacle_but_the_wall_beside_it_is():
     over = routes((3.0, 3.5, 0.1), (1.5, 3.8, 0.1))
-    assert over.map_clearance(PATH, NOBODY, 0.2)[-1] < 0.0
-    found = over.map_clearance(PATH, np.array(((3.0, 3.5),)), 0.2)
+    assert over.map_clearance(PATH, NOBODY)[-1] < 0.0
+    found = over.map_clearance(PATH, np.array(((3.0, 3.5, 0.2),)))
     assert found[-1] > AROUND
     assert found[15] < 0.3
 
 
 def test_beside_the_map_nothing_is_near():
     far = PATH + np.array((100.0, 0.0))
-    assert np.isinf(routes((1.5, 4.1, 0.2)).map_clearance(far, NOBODY, 0.2)).all()
+    assert np.isinf(routes((1.5, 4.1, 0.2)).map_clearance(far, NOBODY)).all()

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from uvf.planning.navigation.right_of_way import Traveller, give_way
+from uvf.planning.navigation.right_of_way import ROOM, Traveller, give_way
 from uvf.planning.smoothing import first_part, from_place, length, resample
 
-APART = 0.35  # m
+RADIUS = 0.125  # m
+APART = 2 * RADIUS + ROOM
 
 
 def path(*corners):
@@ -18,14 +19,18 @@ def clearance(points):
     return np.where(np.abs(points[:, 0]) < 0.3, 0.25, np.maximum(np.abs(points[:, 0]) - 0.05, 0.25))
 
 
+def traveller(name, points, radius=RADIUS):
+    return Traveller(name, points, radius)
+
+
 def waits(own, *others):
-    return give_way(own, clearance(own.path), others, APART)
+    return give_way(own, clearance(own.path), others)
 
 
 def meeting(mine, theirs, names=("a", "b")):
     """Who waits for whom when two come to the door from ``mine`` and ``theirs`` [m] before it."""
-    first = Traveller(names[0], path((-mine, 0.0), (3.0, 0.0)))
-    second = Traveller(names[1], path((theirs, 0.0), (-3.0, 0.0)))
+    first = traveller(names[0], path((-mine, 0.0), (3.0, 0.0)))
+    second = traveller(names[1], path((theirs, 0.0), (-3.0, 0.0)))
     return [None if wait is None else wait.for_whom for wait in (waits(first, second), waits(second, first))]
 
 
@@ -46,16 +51,16 @@ def test_exactly_one_waits_and_both_know_which(mine, theirs, expected):
 
 
 def test_who_waits_does_so_off_the_way_of_the_other():
-    own = Traveller("b", path((3.0, 2.0), (1.0, 2.0), (1.0, 0.0), (-3.0, 0.0)))
-    other = Traveller("a", path((-1.0, 0.0), (3.0, 0.0)))
+    own = traveller("b", path((3.0, 2.0), (1.0, 2.0), (1.0, 0.0), (-3.0, 0.0)))
+    other = traveller("a", path((-1.0, 0.0), (3.0, 0.0)))
     place = first_part(own.path, waits(own, other).until)[-1]
     assert np.hypot(*(other.path - place).T).min() >= APART - 0.02
     assert place == pytest.approx((1.0, 0.4), abs=0.1)
 
 
 def test_who_stands_in_the_way_already_stays():
-    own = Traveller("b", path((2.0, 0.0), (-3.0, 0.0)))
-    assert waits(own, Traveller("a", path((-0.8, 0.0), (3.0, 0.0)))).until == 0.0
+    own = traveller("b", path((2.0, 0.0), (-3.0, 0.0)))
+    assert waits(own, traveller("a", path((-0.8, 0.0), (3.0, 0.0)))).until == 0.0
 
 
 @pytest.mark.parametrize(
@@ -69,12 +74,28 @@ def test_who_stands_in_the_way_already_stays():
     ids=["drives ahead", "crosses before the door", "stays on its side", "stands"],
 )
 def test_nobody_waits_for_who_does_not_come_through(other):
-    assert waits(Traveller("b", path((-1.5, 0.0), (3.0, 0.0))), Traveller("a", other)) is None
+    assert waits(traveller("b", path((-1.5, 0.0), (3.0, 0.0))), traveller("a", other)) is None
+
+
+def test_a_passage_that_is_wide_enough_for_two_small_ones_is_not_for_a_small_and_a_large_one():
+    """1 m wide."""
+    mine, theirs = path((-1.5, 0.0), (3.0, 0.0)), path((1.0, 0.0), (-3.0, 0.0))
+    for large, expected in ((0.2, None), (0.35, "a")):
+        pair = traveller("b", mine), traveller("a", theirs, large)
+        found = [give_way(a, np.where(np.abs(a.path[:, 0]) < 0.3, 0.5, 2.0), [b]) for a, b in (pair, pair[::-1])]
+        assert [wait and wait.for_whom for wait in found] == [expected, None]
+
+
+def test_it_waits_at_the_first_place_where_it_has_to():
+    own = traveller("z", path((3.0, 2.0), (1.0, 2.0), (1.0, 0.0), (-3.0, 0.0)))
+    small, large = (traveller(name, path((-1.0, 0.0), (3.0, 0.0)), radius) for name, radius in (("a", 0.1), ("b", 0.4)))
+    waiting = [waits(own, small), waits(own, large), waits(own, small, large)]
+    assert waiting[2] == min(waiting[:2]) == waiting[1]
 
 
 def test_where_there_is_room_for_two_nobody_waits():
-    own = Traveller("b", path((-1.5, 0.0), (3.0, 0.0)))
-    assert give_way(own, np.full(len(own.path), 0.5), [Traveller("a", path((1.0, 0.0), (-3.0, 0.0)))], APART) is None
+    own = traveller("b", path((-1.5, 0.0), (3.0, 0.0)))
+    assert give_way(own, np.full(len(own.path), 0.5), [traveller("a", path((1.0, 0.0), (-3.0, 0.0)))]) is None
 
 
 def test_a_path_is_cut_where_it_is_said():

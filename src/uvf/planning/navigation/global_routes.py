@@ -93,11 +93,11 @@ class GlobalRoutes:
         """Whether no known obstacle is in the way of turning on the spot."""
         return self._layer.has_room((pose[0], pose[1]), self._planner.body.footprint.circumscribed_radius)
 
-    def map_clearance(self, path: Floats, team: Floats, radius: float) -> Floats:
+    def map_clearance(self, path: Floats, team: Floats) -> Floats:
         """(n,) m from the points of a path (n, 2) [m] to the nearest obstacle of the map, ``AROUND`` or more where none is near.
 
-        Without what only the sensors see, and without the team's vehicles, of ``radius`` [m] at (k, 2) [m]: where one stands for a
-        while the map shows it.
+        Without what only the sensors see, and without the team's vehicles (k, 3), x, y and radius [m]: where one stands for a while the
+        map shows it.
         """
         out = np.full(len(path), np.inf)
         if self._map is None:
@@ -110,7 +110,7 @@ class GlobalRoutes:
         first, last = np.maximum(at.min(axis=0) - around, 0), at.max(axis=0) + around + 1
         taken = cells[first[0] : last[0], first[1] : last[1]] >= OCCUPIED
         rows, columns = np.indices(taken.shape, sparse=True)
-        for x, y in team.tolist():
+        for x, y, radius in team.tolist():
             column, row = ((place - low) / frame[0] - 0.5 for place, low in zip((x, y), frame[1], strict=True))
             taken[np.hypot(rows + first[0] - row, columns + first[1] - column) * frame[0] <= radius] = False
         out[inside] = ((distance_field(taken) - 0.5) * frame[0])[tuple((at - first).T)]

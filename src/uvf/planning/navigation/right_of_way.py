@@ -15,16 +15,18 @@ from uvf.planning.smoothing import resample, way_along
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+ROOM = 0.1  # m between two that pass each other
 AHEAD = 5.0  # m of the way that is worth looking at
 EVEN = 0.5  # m of difference in the ways to the passage, up to which the names decide
 JOINED = 0.4  # m between two narrow places that count as one passage
 
 
 class Traveller(NamedTuple):
-    """A vehicle of the team with its path (n, 2) [m], from where it is to where it goes."""
+    """A vehicle of the team with its path (n, 2) [m], from where it is to where it goes, and its circumscribed radius [m]."""
 
     name: str
     path: Floats
+    radius: float
 
 
 class Wait(NamedTuple):
@@ -34,18 +36,22 @@ class Wait(NamedTuple):
     for_whom: str
 
 
-def give_way(own: Traveller, clearance: Floats, others: Sequence[Traveller], apart: float) -> Wait | None:
-    """Where a vehicle has to wait for another one; None where it may drive on.
+def give_way(own: Traveller, clearance: Floats, others: Sequence[Traveller]) -> Wait | None:
+    """Where a vehicle has to wait for others, the first such place of its path; None where it may drive on.
 
-    clearance: (n,) m from the points of its own path to the nearest obstacle; apart: m between the middles of two that do not touch,
-    and so what two need to either side of the path to pass each other.
+    clearance: (n,) m from the points of its own path to the nearest obstacle.
     """
     along = way_along(own.path)
-    driving = [Traveller(other.name, resample(other.path)) for other in others if len(other.path)]
+    waits = [_wait(own, (along, clearance), other._replace(path=resample(other.path))) for other in others if len(other.path)]
+    return min((wait for wait in waits if wait is not None), default=None)
+
+
+def _wait(own: Traveller, way: tuple[Floats, Floats], other: Traveller) -> Wait | None:
+    """Where it waits for this one. The middles of two that pass each other are ``apart``, and as much is needed to either side."""
+    (along, clearance), apart = way, own.radius + other.radius + ROOM
     for passage in _passages(along, clearance < apart):
-        for other in driving:
-            if _comes_first(own, other, (along, passage), apart):
-                return Wait(_waiting_place(own.path[: passage.start + 1], along, other.path, apart), other.name)
+        if _comes_first(own, other, (along, passage), apart):
+            return Wait(_waiting_place(own.path[: passage.start + 1], along, other.path, apart), other.name)
     return None
 
 

@@ -1,0 +1,38 @@
+"""One vehicle gives way to the rest of its team where a passage is too narrow for two."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from services.planner.team import Team
+from uvf.maths.se2 import Pose2
+from uvf.planning.navigation.directive import Action, Directive
+from uvf.planning.navigation.global_routes import GlobalRoutes
+from uvf.planning.navigation.right_of_way import AHEAD, Traveller, give_way
+from uvf.planning.smoothing import from_place, way_along
+
+BLURRED = 0.1  # m by which the map may show a vehicle of the team elsewhere
+
+
+class GivingWay:
+    """Of the vehicle of that name; radius: circumscribed [m]."""
+
+    def __init__(self, name: str, radius: float, routes: GlobalRoutes) -> None:
+        self.waits_for = ""
+        """The vehicle that comes first through a narrow passage; "" while none does."""
+        self._name, self._radius, self._routes = name, radius, routes
+
+    def heed(self, directive: Directive, here: Pose2, team: Team) -> Directive:
+        """The directive as far as the vehicle at ``here`` [map] may follow it now."""
+        self.waits_for = ""
+        others = team.travellers if directive.action == Action.FOLLOW else []
+        if not others:
+            return directive
+        own, passed = from_place(directive.path, here[:2])
+        own = own[way_along(own) <= AHEAD]
+        clearance = self._routes.map_clearance(own, team.discs + np.array((0.0, 0.0, BLURRED)))
+        wait = give_way(Traveller(self._name, own, self._radius), clearance, others)
+        if wait is None:
+            return directive
+        self.waits_for = wait.for_whom
+        return replace(directive, until=passed + wait.until)
