@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import Gnss, Imu, WheelTicks
+from uvf.estimation.odometry.inclination import Inclination
 from uvf.estimation.odometry.satellites import SatelliteFix
 from uvf.estimation.odometry.states import Step
 from uvf.maths.rotations import from_euler, matrix
@@ -28,6 +29,7 @@ class Readings:
         self._arm = mount.xyz
         self._waiting: list[Imu] = []
         self._turning = 0.0
+        self._inclination = Inclination()
         self.last: WheelTicks | None = None
 
     @property
@@ -60,12 +62,15 @@ class Readings:
         """
         if not np.abs(rate).max() <= MAX_RATE:
             return Step(dt, *ways)
-        _, pitching, turning = (self._body_from_imu @ rate).tolist()
+        rate = self._body_from_imu @ rate
+        turning = float(rate[2])
         angular, self._turning = (turning - self._turning) / dt, turning
         if not (np.any(force) and np.abs(force).max() < MAX_FORCE):
-            return Step(dt, *ways, turning, None, pitching)
-        forward = float(self._body_from_imu[0] @ force) + turning**2 * self._arm[0] + angular * self._arm[1]
-        return Step(dt, *ways, turning, forward, pitching)
+            return Step(dt, *ways, turning)
+        x, y, _ = self._arm
+        on_axle = self._body_from_imu @ force + (turning**2 * x + angular * y, turning**2 * y - angular * x, 0.0)
+        tilting = self._inclination.step(dt, rate, on_axle, ways)
+        return Step(dt, *ways, turning, float(on_axle[0]), *tilting)
 
     def _until(self, now: float) -> tuple[Floats, Floats]:
         """(n, 3) rates and forces of the samples of the interval that the wheels tell of."""

@@ -171,10 +171,25 @@ def test_a_slope_is_no_slip():
         pitch -= pitching * DT
         speed = min(max(k - 20, 0) * 0.01, 0.3)
         force = (speed - before) / DT + 9.80665 * np.sin(pitch)
-        one.step(wheels((speed + before) / 2, 0.0, rate=0.0, force=force)._replace(pitching=pitching))
+        one.step(wheels((speed + before) / 2, 0.0, rate=0.0, force=force)._replace(tilting=-9.80665 * np.cos(pitch) * pitching))
         before = speed
         assert one.doubt is None
     assert one.pose.x == pytest.approx(0.3 * (379 - 14.5) * DT, rel=0.02)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("speed", [0.3, -0.3, 0.0])
+@pytest.mark.parametrize("offset", [0.4, -0.4, 2.0])
+def test_an_accelerometer_that_is_knocked_askew_does_not_run_away_with_it(kind, speed, offset):
+    """The wheels go on as before, or are held fast, quivering; the pose is off by little, and they are believed again."""
+    one = begun(kind)
+    for k in range(1500):
+        driven_at, quiver = min(0.01 * k, 1.0) * speed, 1e-4 * (-1) ** k if k > 100 else 0.0
+        force = (speed / 100 / DT if k < 100 else 0.0) + (offset if k >= 500 else 0.0)
+        one.step(wheels(driven_at, 0.0, rate=0.0, force=force)._replace(left=driven_at * DT + quiver, right=driven_at * DT - quiver))
+    assert one.doubt is None
+    assert one.speeds[0] == pytest.approx(speed, abs=0.02)
+    assert one.pose.x == pytest.approx(speed * (1500 - 50) * DT, abs=0.5 * abs(offset) + 0.5)
 
 
 def test_without_inertial_unit_the_wheels_turn_it():

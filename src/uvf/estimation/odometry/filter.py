@@ -32,7 +32,8 @@ Floats = NDArray[np.float64]
 START_SPEED = 1.0  # m/s, 1 sigma: it may be moving when the filter begins
 GAP = 0.1  # s, a longer step is one in which messages are missing
 AT_REST = 0.2  # s without a tick after which the wheels count as standing: a change of direction is shorter
-SURELY_AT_REST = 1.0  # s after which they do whatever the accelerometer says: no vehicle slides on that long
+SLIDES_ON = 1.0  # s after which the wheels are right whatever the accelerometer says: no vehicle slides on faster than they roll that long
+OUTRUNS = 0.05  # m/s by which it may seem to
 REST_SPEED = 0.005  # m/s, 1 sigma
 REST_GATE = 16.0
 WHEEL_PERIOD = 0.02  # s, over which the turn rate that is told is a mean
@@ -58,7 +59,7 @@ class DriveFilter:
             variances[GNSS_X:] = gnss.horizontal_drift**2
         self.kalman: Kalman = FILTERS[kind](np.zeros(len(variances)), np.diag(variances))
         self._watches = {LEFT: WheelWatch(), RIGHT: WheelWatch()}
-        self._still_for = 0.0
+        self._still_for = self._doubted_for = 0.0
         self._turn_rate = 0.0
         self.is_unseen = False
         """Set while the scans do not see the motion that the wheels tell."""
@@ -152,7 +153,7 @@ class DriveFilter:
             self._forget_speed()
 
     def _forget_speed(self) -> None:
-        """After a gap: what the wheels have told is its mean speed, not that of its end."""
+        """After a gap, for what the wheels have told is its mean speed, not that of its end; and after the accelerometer told it wrong."""
         self.kalman.P[SPEED, :] = self.kalman.P[:, SPEED] = 0.0
         self.kalman.P[SPEED, SPEED] = START_SPEED**2
 
@@ -174,7 +175,7 @@ class DriveFilter:
         self._still_for = self._still_for + step.dt if step.left == step.right == 0.0 else 0.0
         if self._still_for <= AT_REST:
             return False
-        n, surely = len(self.kalman.x), self._still_for > SURELY_AT_REST
+        n, surely = len(self.kalman.x), self._still_for > SLIDES_ON
         standing = _linear(0.0, n, {SPEED: 1.0}, REST_SPEED**2)
         if step.rate is not None:
             silent = _linear(step.rate, n, {GYRO_BIAS: 1.0}, self.noise.rest**2 + self.noise.gyro**2 / step.dt)
@@ -206,6 +207,23 @@ class DriveFilter:
                 correct(self.kalman, measured, self._held)
             else:
                 self.doubt = wheel_cause(name, speed, speed - innovation)
+        self._doubted_for = self._doubted_for + step.dt if self.doubt else 0.0
+        if self._doubted_for > SLIDES_ON:
+            side = self.track / 2 * turn
+            self._hold_back((step.left + side) / step.dt, (step.right - side) / step.dt)
+
+    def _hold_back(self, left: float, right: float) -> None:
+        """Wheels that slip roll faster than the vehicle moves: what has outrun them for long is an error of the accelerometer.
+
+        left, right: speed [m/s] of the vehicle by each wheel.
+        """
+        if abs(float(self.kalman.x[SPEED])) <= max(abs(left), abs(right)) + OUTRUNS:
+            return
+        self.kalman.x[SPEED] = (left + right) / 2
+        self._forget_speed()
+        self.kalman.P[ACCEL_OFFSET, :] = self.kalman.P[:, ACCEL_OFFSET] = 0.0
+        self.kalman.P[ACCEL_OFFSET, ACCEL_OFFSET] = self.noise.offset_start**2
+        self._watches = {LEFT: WheelWatch(), RIGHT: WheelWatch()}
 
     def _mean_of_wheels(self, step: Step, variances: tuple[float, float]) -> None:
         """Without a gyroscope there is nothing to compare each wheel with."""

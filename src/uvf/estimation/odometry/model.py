@@ -1,6 +1,6 @@
 """Motion of a differential drive, with derivatives, for both filters.
 
-A step has two parts. First what moves the speed: the accelerometer, whose offset follows the slope that the gyroscope feels; the wheels'
+A step has two parts. First what moves the speed: the accelerometer, whose offset follows the slope as ``inclination`` has it; the wheels'
 speeds then correct it. Then the pose moves by that speed and by the gyroscope's turn rate less its bias, along an arc.
 """
 
@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from uvf.estimation.odometry.states import ACCEL_OFFSET, GNSS_X, GYRO_BIAS, HEADING, LEFT, RIGHT, SPEED, Noise, Step, X, Y
 from uvf.maths.compiled import compiled
-from uvf.maths.geodesy import GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -103,7 +102,7 @@ def driven(step: Step, size: int, slow: float) -> tuple[Floats, Floats]:
     if step.force is not None:
         f[SPEED, ACCEL_OFFSET] = -step.dt
         shift[SPEED] = step.force * step.dt
-        shift[ACCEL_OFFSET] = -GRAVITY * step.pitching * step.dt
+        shift[ACCEL_OFFSET] = step.tilting * step.dt
     f[GNSS_X:, GNSS_X:] *= slow
     return f, shift
 
@@ -114,6 +113,6 @@ def drive_noise(step: Step, noise: Noise, size: int) -> Floats:
     accel = FOLLOWING if step.force is None else noise.accel
     q[SPEED, SPEED] = accel**2 * step.dt
     q[GYRO_BIAS, GYRO_BIAS] = noise.bias_walk**2 * step.dt
-    q[ACCEL_OFFSET, ACCEL_OFFSET] = noise.offset_walk**2 * step.dt
+    q[ACCEL_OFFSET, ACCEL_OFFSET] = (noise.offset_walk**2 + step.tilting_noise**2) * step.dt
     q[LEFT, LEFT], q[RIGHT, RIGHT] = noise.scale_walk**2 * abs(step.left), noise.scale_walk**2 * abs(step.right)
     return q

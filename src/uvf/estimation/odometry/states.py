@@ -22,7 +22,8 @@ class Step(NamedTuple):
     right: float
     rate: float | None = None  # rad/s, mean of the gyroscope about the upward axis
     force: float | None = None  # m/s^2, mean of the accelerometer's forward axis at the middle of the axle
-    pitching: float = 0.0  # rad/s, mean of the gyroscope about the left axis
+    tilting: float = 0.0  # m/s^3, by which gravity's part of that force changes as the vehicle pitches, and turns on a slope
+    tilting_noise: float = 0.0  # m/s^2 per square root of s, 1 sigma of it
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,74 @@
+"""How the slope under a ground vehicle changes what its accelerometer feels, as it pitches and as it turns on the slope.
+
+A Kalman filter of gravity's forward and left parts and of the accelerometer's biases there. What turns with the ground as the vehicle
+yaws is gravity, and what stays with the vehicle is bias: they are told apart in the first turns, and not before.
+"""
+
+from math import cos, sin, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.geodesy import GRAVITY
+
+Floats = NDArray[np.float64]
+
+STEEP, BIAS = 2.0, 0.1  # m/s^2, 1 sigma at the start of gravity's parts, and of the biases
+SHAKEN, BIAS_WALK = 0.03, 1e-3  # m/s^2 per square root of s, by which they change beside what the gyroscope says
+FELT = 0.3  # m/s^2, 1 sigma of what is felt beside gravity and bias: skidding, bumps, the speed's changes
+STRUCK = 1.5  # m/s^2 of difference, from which on it is a blow
+SETTLING, STILL = 1.0, 0.03  # s at rest in which the gyroscope's mean counts for its bias; rad/s at which it is tilted instead
+
+
+class Tilting(NamedTuple):
+    """Change of gravity's forward part: m/s^3, and m/s^2 per square root of s by which it may be wrong."""
+
+    rate: float
+    noise: float
+
+
+class Inclination:
+    """Follows gravity's part of the specific force in the base frame (forward, left, upward)."""
+
+    def __init__(self) -> None:
+        self.state = np.zeros(4)
+        """Gravity's parts forward and left, and the biases of the accelerometer there [m/s^2]."""
+        self._p = np.diag((STEEP, STEEP, BIAS, BIAS)) ** 2
+        self._speed = 0.0
+        self._gyro_bias = np.zeros(2)
+
+    def step(self, dt: float, rate: Floats, force: Floats, ways: tuple[float, float]) -> Tilting:
+        """How gravity's forward part has changed in the last ``dt`` [s].
+
+        rate: (3,) rad/s, force: (3,) m/s^2 in the middle of the axle, both in the base frame; ways: m that the wheels have rolled.
+        """
+        if ways == (0.0, 0.0) and np.abs(rate[:2] - self._gyro_bias).max() < STILL:
+            self._gyro_bias += (rate[:2] - self._gyro_bias) * min(dt / SETTLING, 1.0)
+        tilting = self._turn(dt, rate)
+        speed = (ways[0] + ways[1]) / (2.0 * dt)
+        accelerated = np.array(((speed - self._speed) / dt, speed * rate[2]))
+        self._speed = speed
+        self._feel(force[:2] - accelerated)
+        return tilting
+
+    def _turn(self, dt: float, rate: Floats) -> Tilting:
+        """Gravity turns against the vehicle: by yaw, and by roll and pitch, which are small."""
+        rolling, pitching = (rate[:2] - self._gyro_bias).tolist()
+        yaw, before, left = float(rate[2]) * dt, float(self.state[0]), float(self._p[1, 1])
+        f = np.eye(4)
+        f[:2, :2] = ((cos(yaw), sin(yaw)), (-sin(yaw), cos(yaw)))
+        self.state = f @ self.state + GRAVITY * dt * np.array((-pitching, rolling, 0.0, 0.0))
+        self._p = f @ self._p @ f.T + np.diag((SHAKEN, SHAKEN, BIAS_WALK, BIAS_WALK)) ** 2 * dt
+        return Tilting((float(self.state[0]) - before) / dt, sqrt(left * abs(float(rate[2]))))
+
+    def _feel(self, felt: Floats) -> None:
+        h = np.hstack((np.eye(2), np.eye(2)))
+        off = felt - h @ self.state
+        s = h @ self._p @ h.T + FELT**2 * np.eye(2)
+        if np.abs(off).max() > STRUCK and np.abs(off).max() > 3.0 * sqrt(float(s[0, 0])):
+            return
+        gain = np.linalg.solve(s, h @ self._p).T
+        self.state = self.state + gain @ off
+        self._p = self._p - gain @ h @ self._p
+        self._p = (self._p + self._p.T) / 2

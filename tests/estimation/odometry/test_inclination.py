@@ -1,0 +1,70 @@
+"""A slope is told from the accelerometer's biases, and a vehicle that turns on one does not seem to slip."""
+
+import numpy as np
+import pytest
+
+from benchmarks.estimation.odometry.drive import DT, TRACK
+from uvf.estimation.odometry.filter import DriveFilter
+from uvf.estimation.odometry.inclination import Inclination
+from uvf.estimation.odometry.states import Noise, Step
+from uvf.maths.geodesy import GRAVITY
+
+BIAS = np.array((0.08, -0.06, 0.02))  # m/s^2
+
+
+def on_a_slope(steepest, speed, turning, seconds=30.0):
+    """Steps of a vehicle that stands for a second, drives onto a slope [rad] at 3 s, and in a circle there from 5 s on."""
+    rng, heading, last = np.random.default_rng(1), 0.0, 0.0
+    for k in range(round(seconds / DT)):
+        t = k * DT
+        slope, rising = steepest * min(max(t - 3.0, 0.0), 1.0), steepest * (3.0 <= t < 4.0)
+        driven, turned = speed * min(max(t - 1.0, 0.0), 1.0), turning * min(max(t - 5.0, 0.0), 1.0)
+        heading += turned * DT
+        gravity = GRAVITY * np.array((np.sin(slope) * np.cos(heading), -np.sin(slope) * np.sin(heading), np.cos(slope)))
+        force = gravity + ((driven - last) / DT, driven * turned, 0.0) + BIAS + 0.05 * rng.standard_normal(3)
+        rate = np.array((0.002, -rising - 0.003, turned)) + 0.002 * rng.standard_normal(3)
+        side = turned * TRACK / 2
+        ways = ((driven + last) / 2 - side) * DT, ((driven + last) / 2 + side) * DT
+        last = driven
+        yield rate, force, ways, gravity
+
+
+@pytest.mark.parametrize("degrees", [0.0, 4.0, -8.0, 12.0])
+def test_turning_on_a_slope_is_no_slip(degrees):
+    for speed, turning in ((0.3, 1.0), (0.4, -2.5)):
+        inclination, one = Inclination(), DriveFilter("ekf", Noise(), TRACK)
+        for rate, force, ways, _ in on_a_slope(np.radians(degrees), speed, turning):
+            one.step(Step(DT, *ways, rate[2], force[0], *inclination.step(DT, rate, force, ways)))
+            assert one.doubt is None
+        assert one.speeds[0] == pytest.approx(speed, abs=0.01)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 6.0])
+def test_gravity_and_biases_are_told_apart_by_turning(degrees):
+    inclination = Inclination()
+    steps = list(on_a_slope(np.radians(degrees), 0.3, 0.8))
+    for rate, force, ways, _ in steps:
+        inclination.step(DT, rate, force, ways)
+    assert inclination.state[2:] == pytest.approx(BIAS[:2], abs=0.02)
+    assert inclination.state[:2] == pytest.approx(steps[-1][3][:2], abs=0.06)
+
+
+def test_the_change_is_uncertain_until_the_vehicle_has_turned():
+    inclination = Inclination()
+    noises = [inclination.step(DT, rate, force, ways).noise for rate, force, ways, _ in on_a_slope(0.0, 0.3, 1.0)]
+    assert noises[150] == pytest.approx(0.0, abs=0.02)
+    assert noises[310] > 1.5 * noises[-1] > 0.0
+
+
+def test_a_blow_is_no_slope():
+    inclination, blow = Inclination(), np.array((30.0, -30.0, 0.0))
+    for k, (rate, force, ways, _) in enumerate(on_a_slope(0.0, 0.3, 1.0)):
+        inclination.step(DT, rate, force + blow if 700 <= k < 705 else force, ways)
+    assert inclination.state[:2] == pytest.approx((0.0, 0.0), abs=0.06)
+
+
+def test_a_gyroscope_that_is_biased_does_not_tilt_a_vehicle_that_stands():
+    inclination = Inclination()
+    for _ in range(1500):
+        tilting = inclination.step(DT, np.array((0.01, -0.02, 0.0)), np.array((0.0, 0.0, GRAVITY)), (0.0, 0.0))
+    assert tilting.rate == pytest.approx(0.0, abs=1e-3)
