@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -9,14 +10,14 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MapSession
+from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MapSession, Odometry
 from services.slam.placing_service import PlacingService, fix_message
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
 from uvf.models.keys import key, plain
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.declaration import Reads, Writes, frames, topic
+from uvf.runtime.contract.declaration import Reads, Writes, frames, optional, topic
 from uvf.runtime.messages.convert import occupancy_grid, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.slam.maps.session import MappingSession
@@ -29,6 +30,7 @@ from uvf.slam.resumable import Noting, Resumable
 
 Floats = NDArray[np.float64]
 
+YAW_YAW = 35  # index in a covariance (6, 6) of a pose, by rows
 LEAP, LEAP_TURN = 0.3, 0.1  # m, rad: a correction that moves the vehicle by more is told
 
 
@@ -48,10 +50,11 @@ class MappingService(PlacingService):
     purpose = "mapped"
 
     class Inputs(Reads):
-        """Scans and frames."""
+        """Scans, frames, and how sure the odometry is."""
 
         scan: LaserScan = topic(topics.SCAN)
         frames: FrameBuffer = frames()
+        odometry: Odometry | None = optional(topics.ODOMETRY)
 
     class Outputs(Writes):
         """Frames, map, pose in the map, session and events."""
@@ -101,7 +104,7 @@ class MappingService(PlacingService):
         try:
             self._odom_from_base = planar(now.frames.lookup(self._frame("odom"), self._frame("base_footprint")))
             if (reading := self._reading(now.scan, now.frames)) is not None:
-                out.fix, events = self._look(t, reading)
+                out.fix, events = self._look(t, replace(reading, heading_variance=_heading_variance(now.odometry)))
             self._placeless_since = None
         except FrameError as error:
             return self.Outputs(events=self._wait(t, str(error)))
@@ -188,3 +191,9 @@ class MappingService(PlacingService):
             return None
         self._session_time, self._kept = t, count
         return MapSession(timestamp=stamp(t), data=self._method.session().encoded("on the bus"))
+
+
+def _heading_variance(odometry: Odometry | None) -> float:
+    """rad^2, NaN where the odometry does not say."""
+    told = odometry.pose_covariance if odometry is not None else ()
+    return told[YAW_YAW] if len(told) == 36 else np.nan

@@ -1,6 +1,7 @@
 """What a 2-D SLAM method is fed with: a scan of ranges and where the odometry has the vehicle at its stamp."""
 
 from dataclasses import dataclass, field
+from math import nan, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,13 +37,15 @@ class Beams:
 class Reading:
     """One scan of a lidar with the odometry's pose at its end.
 
-    t: stamp of its last beam [s]; ranges: (n,) [m]; odom_from_base: by the odometry at ``t``.
+    t: stamp of its last beam [s]; ranges: (n,) [m]; odom_from_base: by the odometry at ``t``; heading_variance: of that pose's yaw
+    [rad^2], as the odometry has it, NaN where it does not say.
     """
 
     t: float
     ranges: Floats
     beams: Beams
     odom_from_base: Pose2
+    heading_variance: float = nan
 
     @property
     def returned(self) -> NDArray[np.bool_]:
@@ -50,3 +53,11 @@ class Reading:
         with np.errstate(invalid="ignore"):
             found: NDArray[np.bool_] = (self.ranges > max(self.beams.range_min, 0.0)) & (self.ranges < self.beams.range_max)
         return found
+
+    def heading_sigma_since(self, before: "Reading") -> float | None:
+        """1 sigma [rad] of the turn since a reading before, as the odometry has it; None where it does not say.
+
+        An odometry that is never corrected grows less certain with every step; one that says otherwise says nothing.
+        """
+        growth = self.heading_variance - before.heading_variance
+        return sqrt(growth) if growth > 0.0 else None

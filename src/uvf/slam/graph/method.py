@@ -79,7 +79,7 @@ class GraphSlam:
 
     def add(self, reading: Reading) -> SlamEstimate:
         """Tracks one reading, makes it a keyframe if the vehicle has moved enough, and closes loops."""
-        step = self._step(reading)
+        last, step = self._last, self._step(reading)
         if len(self.nodes) == 0:
             self._matched = reading
             self._add_node(Node(reading, cloud_of(reading), 0.0, 0.0))
@@ -90,7 +90,8 @@ class GraphSlam:
         if stood and not (self._matched is None or _changed(self._matched, reading)):
             self._pose = compose(self._pose, step)
             return self._place(self.quality)
-        return self._track(reading, OdometryMotion(self._pose, step, self.tracker.noise, stood))
+        claimed = reading.heading_sigma_since(last) if last is not None else None
+        return self._track(reading, OdometryMotion(self._pose, step, self.tracker.noise, stood, claimed))
 
     def _track(self, reading: Reading, motion: OdometryMotion) -> SlamEstimate:
         cloud, self._matched = cloud_of(reading), reading
@@ -101,7 +102,7 @@ class GraphSlam:
             self._blind = True
             self._count(compose(inverse(motion.before), self._pose))
         moved = self._moved()
-        step_covariance = self._step_covariance(moved, found, cloud.is_thin)
+        step_covariance = self._step_covariance(moved, found, cloud.is_thin, reading)
         self._covariance = followed(self._node_covariance, self.nodes.poses[self._near], moved, step_covariance)
         if hypot(moved[0], moved[1]) > self.params.keyframe_distance or abs(moved[2]) > self.params.keyframe_turn:
             self._keep(Node(reading, cloud, self._way, self._turn), moved, step_covariance)
@@ -192,14 +193,15 @@ class GraphSlam:
         end = self._near + 1
         self._local = LocalMap(self.nodes.surfaces(range(max(0, end - RECENT), end)))
 
-    def _step_covariance(self, moved: Pose2, found: Match, is_thin: bool) -> Floats:
+    def _step_covariance(self, moved: Pose2, found: Match, is_thin: bool, reading: Reading) -> Floats:
         """(3, 3) of the motion since the last keyframe, along its axes: of the match and, where that is weak, of the odometry."""
         before = self.nodes.all[-1]
         way = Pose2(self._way - before.travelled, 0.0, self._turn - before.turned)
         turn = turned(self.nodes.poses[self._near].yaw)
         matched = turn.T @ found.information @ turn * (DOUBTED if self._doubted else 1.0)
         noise = self.tracker.trust.usual(self.tracker.noise) if is_thin else self.tracker.noise
-        told = (UNKNOWN if self._blind else noise).information(way)
+        claimed = reading.heading_sigma_since(before.reading) if is_thin else None
+        told = UNKNOWN.information(way) if self._blind else noise.information(way, claimed)
         position, heading, per_turn = EDGE_FLOOR
         floor = np.diag((position, position, heading + per_turn * abs(moved[2]))) ** 2
         covariance: Floats = np.linalg.inv(matched + told) + floor

@@ -11,6 +11,10 @@ from uvf.maths.se2 import Pose2, compose
 Floats = NDArray[np.float64]
 
 
+ALLOWANCE, LEAST_HEADING = 3.0, 3e-4
+"""Times what an odometry says of its turn, and rad at least, that it is off."""
+
+
 @dataclass(frozen=True)
 class MotionNoise:
     """1 sigma of a step of odometry: position [m] and heading [rad], each at once, per m driven and per rad turned."""
@@ -23,9 +27,14 @@ class MotionNoise:
         way = np.array((1.0, hypot(step[0], step[1]), abs(step[2])))
         return float(way @ self.position), float(way @ self.heading)
 
-    def information(self, step: Pose2) -> Floats:
-        """Information (3, 3) of (x, y, yaw) of a step [1/m^2, 1/rad^2]."""
+    def information(self, step: Pose2, claimed: float | None = None) -> Floats:
+        """Information (3, 3) of (x, y, yaw) of a step [1/m^2, 1/rad^2].
+
+        claimed: 1 sigma of its turn [rad] as the odometry has it; it counts with some allowance where it is the smaller one.
+        """
         position, heading = self.sigmas(step)
+        if claimed is not None:
+            heading = min(heading, max(ALLOWANCE * claimed, LEAST_HEADING))
         return np.diag((position**-2, position**-2, heading**-2))
 
 
@@ -35,12 +44,16 @@ UNKNOWN = MotionNoise((0.25, 0.1, 0.03), (0.25, 0.02, 0.15))
 
 @dataclass(frozen=True)
 class OdometryMotion:
-    """A step of odometry from the pose ``before`` (map_from_base); disputed: something tells that the step is wrong."""
+    """A step of odometry from the pose ``before`` (map_from_base).
+
+    disputed: something tells that the step is wrong; claimed: 1 sigma of its turn [rad] as the odometry has it, None where it does not say.
+    """
 
     before: Pose2
     step: Pose2
     noise: MotionNoise
     disputed: bool = False
+    claimed: float | None = None
 
     @property
     def guess(self) -> Pose2:

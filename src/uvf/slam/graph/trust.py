@@ -73,11 +73,11 @@ class Trust:
             self.position, self.heading = _followed(self.position, position), _followed(self.heading, heading)
 
     def information(self, motion: OdometryMotion) -> Floats:
-        """Information (3, 3) of (x, y, yaw) of a motion [1/m^2, 1/rad^2], by how far off this odometry usually is.
+        """Information (3, 3) of (x, y, yaw) of a motion [1/m^2, 1/rad^2], by how far off this odometry usually is, or says it is.
 
         Of a motion that the odometry has not told, as it is.
         """
-        return self.usual(motion.noise).information(motion.step) if motion.told else motion.information
+        return self.usual(motion.noise).information(motion.step, motion.claimed) if motion.told else motion.information
 
     def surprise(self, motion: OdometryMotion, found: Pose2) -> float:
         """How unlikely the pose ``found`` is after the motion [-]: log(1 + d^2) of its distance d in sigmas.
