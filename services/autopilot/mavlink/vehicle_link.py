@@ -28,7 +28,7 @@ from services.autopilot.mavlink.telemetry.events import EventNews
 from services.autopilot.mavlink.telemetry.health import health
 from services.autopilot.mavlink.telemetry.identity import greeting
 from services.autopilot.mavlink.telemetry.streams import Schedule
-from services.autopilot.mavlink.telemetry.telemetry import STREAMS
+from services.autopilot.mavlink.telemetry.telemetry import STREAMS, mission_current
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.endpoint import Peer
 
@@ -166,6 +166,8 @@ class VehicleLink:
         if progress is None or mission is None:
             return
         for index in self._reached.look(progress, mission.items):
+            if index == progress.current:  # stations count the last item as done once they hear this of the one they take for current
+                self.line.send(mission_current(self.line.latest))
             self.line.send(mav.MAVLink_mission_item_reached_message(index))
 
     def _note_complaints(self) -> None:

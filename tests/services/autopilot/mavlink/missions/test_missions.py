@@ -5,7 +5,7 @@ import struct
 
 import pytest
 
-from schemas.messages import Mission, MissionItem, Vector3
+from schemas.messages import Mission, MissionItem, MissionProgress, Vector3
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, of, texts
 from uvf.mavlink import dialect as mav
 
@@ -271,6 +271,21 @@ def test_progress_is_told_when_it_happens():
     told = of(heard, "MISSION_CURRENT", PLANE)[0]
     assert (told.seq, told.total, told.mission_state, told.mission_id) == (1, 6, 2, rig.plane.mission.id)
     assert of(rig.run(0.5), "MISSION_ITEM_REACHED") == []
+
+
+def test_the_last_item_is_told_to_be_the_current_one_before_it_is_reached():
+    """On a busy machine both are known at once; MAVSDK and others would otherwise count back from 6 of 6 to 5 of 6."""
+    rig = Rig()
+    rig.run()
+    upload(rig, PLAN)
+    rig.run(0.5)
+    progress = rig.plane.progress
+    progress.reached = progress.current = len(rig.plane.mission.items) - 1
+    progress.state = MissionProgress.COMPLETE
+    told = [m for m in rig.run(0.04) if m.get_type() in ("MISSION_CURRENT", "MISSION_ITEM_REACHED")]
+    reached = [k for k, m in enumerate(told) if m.get_type() == "MISSION_ITEM_REACHED"]
+    assert told[reached[-1]].seq == told[reached[-1] - 1].seq == progress.current
+    assert told[reached[-1] - 1].get_type() == "MISSION_CURRENT"
 
 
 def test_set_current_by_message():
