@@ -1,5 +1,7 @@
 """Plans on a map: round walls, not through them; and a reason when there is none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -72,8 +74,9 @@ def test_on_a_map_of_too_many_cells_nobody_drives_until_there_is_a_smaller_one()
     assert made.refusal((0.6, 0.6), (3.4, 0.6)) == ""
 
 
-def test_a_goal_too_far_for_a_message_of_the_path_is_refused():
-    made = GlobalPlanner(BODY)
+@pytest.mark.parametrize("planner", ["astar", "jump_points"])
+def test_a_goal_too_far_for_a_message_of_the_path_is_refused(planner):
+    made = GlobalPlanner(replace(BODY, planner=planner))
     made.see(np.zeros((3, 1100), dtype=np.int8), (10.0, (0.0, 0.0)))
     near, far = (9_900.0, 15.0), (10_500.0, 15.0)
     assert made.refusal((5.0, 15.0), near) == ""

@@ -220,7 +220,8 @@ class GlobalPlanner:
         planner = make_global_planner(self._body.planner, self._leaving(known, known.cell(*start)), usual)
         found = planner.plan(PathQuery((*start, 0.0), (x, y, 0.0), seconds=SECONDS))
         if found.path is not None:
-            return PlannedPath(resample(found.path[:, :2]))
+            too_far = _too_far(found.path[:, :2])
+            return PlannedPath(None, too_far, Failure.GOAL_TOO_FAR) if too_far else PlannedPath(resample(found.path[:, :2]))
         failure = FAILURES.get(found.refusal, Failure.NO_VALID_PATH) if found.refusal is not None else Failure.NO_VALID_PATH
         return PlannedPath(None, f"{self._body.planner}: {found.reason or failure.value}", failure)
 
