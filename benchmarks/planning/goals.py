@@ -3,23 +3,26 @@
 In lockstep. Goals lie on the floor that the rover can reach and its map knows. ``reached %``: it says so, and truly is within 0.3 m.
 ``m``, ``s``: straight distance and time of those that were reached. ``closest m``: least true distance of its outline to anything;
 ``touched``: whether its bumper says so. The truth draws the goals and judges, and nobody else hears it. A rover that a failsafe has
-put on hold has missed its goal, and is told to go on before the next one, as an operator would do.
+put on hold, or disarmed, has missed its goal, and is told to go on before the next one, as an operator would do.
 """
 
 import tempfile
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import yaml
+from google.protobuf.message import Message
 from numpy.typing import NDArray
 
 from launch import catalogue
 from launch.commands.bench import Case, Figures
 from launch.commands.bench_selection import Selection
 from schemas import topics
-from schemas.messages import Contact, GoalRequest, Grid, Mode, ModeRequest, NavState, NavStatus, Reply, Vector3
+from schemas.messages import ArmRequest, Contact, GoalRequest, Grid, Mode, ModeRequest, NavState, NavStatus, Reply, Vector3
+from schemas.topics import Request
 from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.urdf.model import load_urdf
@@ -122,18 +125,12 @@ class Errands:
     def drive(self, goal: Floats) -> tuple[bool, float, float]:
         """Whether the goal was reached, and truly so; its distance [m] at the start, and the time [s] that it took."""
         begun, x, y, _ = self.heard.true[-1]
-        mode = ModeRequest(mode=Mode.MODE_MISSION, source="bench")
-        self._lockstep.bus.call(topics.SET_MODE.at(VEHICLE), mode.SerializeToString(), round(begun * 1e9), lambda *reply: None)
+        arm, mode = ArmRequest(arm=True, source="bench"), ModeRequest(mode=Mode.MODE_MISSION, source="bench")
+        self._ask(topics.ARM, arm)
+        self._ask(topics.SET_MODE, mode)
         self._lockstep.run(begun + SETTLED)
         begun = self.heard.true[-1][0]
-        request = GoalRequest(position=Vector3(x=goal[0], y=goal[1]), yaw=float("nan"), source="bench")
-        replies: list[Reply] = []
-        self._lockstep.bus.call(
-            topics.GOAL.at(VEHICLE),
-            request.SerializeToString(),
-            round(begun * 1e9),
-            lambda reply, reason, at: replies.append(Reply.FromString(reply)) if reply is not None else None,
-        )
+        replies = self._ask(topics.GOAL, GoalRequest(position=Vector3(x=goal[0], y=goal[1]), yaw=float("nan"), source="bench"))
         self._lockstep.run(begun + 1.0)
         if not replies or not replies[0].accepted:
             return False, float(np.hypot(goal[0] - x, goal[1] - y)), 0.0
@@ -141,6 +138,18 @@ class Errands:
         ended, at_x, at_y, _ = self.heard.true[-1]
         reached = self.heard.status.state == NavStatus.REACHED and np.hypot(at_x - goal[0], at_y - goal[1]) < THERE
         return bool(reached), float(np.hypot(goal[0] - x, goal[1] - y)), ended - begun
+
+    def _ask(self, request: Request[Any, Reply], message: Message) -> list[Reply]:
+        """The list into which the reply comes."""
+        replies: list[Reply] = []
+        now = round(self.heard.true[-1][0] * 1e9)
+
+        def keep(reply: bytes | None, reason: str, at: int) -> None:
+            if reply is not None:
+                replies.append(Reply.FromString(reply))
+
+        self._lockstep.bus.call(request.at(VEHICLE), message.SerializeToString(), now, keep)
+        return replies
 
     def _is_driving(self) -> bool:
         return self.heard.status.job == "goal" and self.heard.status.state not in (NavStatus.REACHED, NavStatus.CANCELLED)
