@@ -17,6 +17,9 @@ from uvf.planning.assignment import assign
 
 places = [Vector3(x=float(x), y=float(y)) for x, y in (text.split(",") for text in sys.argv[1:])]
 
+if not places:
+    sys.exit("name the places, as 2.5,1.5 8.0,4.0 [m, world]")
+
 with uvf.connect() as run:
     team = [name for name in run.vehicles() if run.read(name, topics.STATUS).kind == Kind.KIND_GROUND]
 
@@ -33,4 +36,4 @@ with uvf.connect() as run:
             reply = run.ask(rover, topics.ROUTE, route)
             print(f"{rover} goes to {len(tour)} places in {time:.0f} s" if reply.accepted else f"{rover}: {reply.reason}")
     for goal in found.unreachable:
-        print(f"nobody gets to ({places[goal].x:g}, {places[goal].y:g})")
+        print(f"nobody goes to ({places[goal].x:g}, {places[goal].y:g})")

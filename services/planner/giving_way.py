@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from services.planner.team import Team
+from services.planner.team import Teammates
 from uvf.maths.se2 import Pose2
 from uvf.planning.navigation.directive import Action, Directive
 from uvf.planning.navigation.global_routes import GlobalRoutes
@@ -22,7 +22,7 @@ class GivingWay:
         """The vehicle that comes first through a narrow passage; "" while none does."""
         self._name, self._radius, self._routes = name, radius, routes
 
-    def heed(self, directive: Directive, here: Pose2, team: Team) -> Directive:
+    def heed(self, directive: Directive, here: Pose2, team: Teammates) -> Directive:
         """The directive as far as the vehicle at ``here`` [map] may follow it now."""
         self.waits_for = ""
         others = team.travellers if directive.action == Action.FOLLOW else []

@@ -23,7 +23,7 @@ from services.planner.obstacle_sensors import OtherReadings
 from services.planner.params import PlannerParams
 from services.planner.planned_vehicle import PlannedVehicle
 from services.planner.planning_ground import PlanningGround
-from services.planner.team import Team
+from services.planner.team import Teammates
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose
 from uvf.planning.costmap.inflation import Inflation
@@ -83,7 +83,7 @@ class PlannerService(Service):
         self._try_at = inf
         """When a place that was given up is tried again."""
         self._told = 0
-        self._team = Team(vehicle.name, self._footprint.circumscribed_radius, world_from_map)
+        self._team = Teammates(vehicle.name, self._footprint.circumscribed_radius, world_from_map)
         self._right = GivingWay(vehicle.name, self._footprint.circumscribed_radius, self._ground.routes)
         self._asks: list[ModeRequest] = []
         self._events: list[Event] = []

@@ -1,6 +1,6 @@
 """The rest of the team, as the planner of one vehicle hears of it."""
 
-from math import isfinite
+from collections import deque
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,25 +14,29 @@ from uvf.planning.smoothing import from_place
 Point = tuple[float, float]
 Floats = NDArray[np.float64]
 
+LATELY = 40  # times that they were heard
 MOST = 2000  # points of another vehicle's path that are looked at
-LARGEST = 10.0  # m, of the radius that a vehicle may say it has
+LARGEST = 2.5  # m, of the radius that a vehicle may say it has
+FARTHEST = 1e5  # m from the world's origin that a place may lie
 AT_IT = (NavStatus.DRIVING, NavStatus.RECOVERING)
 
 
-class Team:
+class Teammates:
     """The others, of a vehicle of that name and circumscribed radius [m]. Who does not say its own radius is taken for as large."""
 
     def __init__(self, own: str, radius: float, world_from_map: Pose2) -> None:
         self.places: dict[str, Point] = {}
         """Where they are [m, world]; without those whose place is none."""
         self._own, self._radius, self._map_from_world = own, radius, inverse(world_from_map)
+        self._been: deque[dict[str, Point]] = deque(maxlen=LATELY)
         self._said: dict[str, NavStatus] = {}
         self._paths: dict[str, PosesInFrame] = {}
 
     def hear(self, poses: dict[str, PoseInFrame], said: dict[str, NavStatus], paths: dict[str, PosesInFrame]) -> None:
         """What they publish now, by name; the vehicle's own are left out."""
         found = {name: (pose.pose.position.x, pose.pose.position.y) for name, pose in poses.items() if name != self._own}
-        self.places = {name: place for name, place in sorted(found.items()) if all(map(isfinite, place))}
+        self.places = {name: place for name, place in sorted(found.items()) if all(abs(part) < FARTHEST for part in place)}
+        self._been.append(self.places)
         self._said, self._paths = said, paths
 
     @property
@@ -51,14 +55,15 @@ class Team:
             path = self._paths.get(name)
             if path is not None and path.poses:
                 points = np.array([(pose.position.x, pose.position.y) for pose in path.poses[:MOST]])
-                rest, _ = from_place(points[np.isfinite(points).all(axis=1)], place)
+                rest, _ = from_place(points[(np.abs(points) < FARTHEST).all(axis=1)], place)
                 found.append(Traveller(name, transform(self._map_from_world, rest), self._radius_of(name)))
         return found
 
     @property
     def discs(self) -> Floats:
-        """(n, 3) what they cover: x, y, radius [m, map]."""
-        return np.array([(*self._in_map(np.array(place)), self._radius_of(name)) for name, place in self.places.items()]).reshape(-1, 3)
+        """(n, 3) what they cover and have covered lately, and maps may still show: x, y, radius [m, map]."""
+        been = {(name, place) for places in self._been for name, place in places.items()}
+        return np.array([(*self._in_map(np.array(place)), self._radius_of(name)) for name, place in sorted(been)]).reshape(-1, 3)
 
     def _radius_of(self, name: str) -> float:
         said = self._said.get(name)

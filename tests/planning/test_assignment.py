@@ -42,6 +42,15 @@ def test_it_finds_what_trying_everything_finds(vehicles, goals):
         assert (max(found.times), sum(found.times)) == pytest.approx(tried_all(to_goals, between))
 
 
+def test_the_sum_counts_where_a_far_goal_makes_the_longest_tour():
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        starts, places = rng.uniform(0.0, 10.0, (3, 2)), np.vstack(((200.0, 5.0), rng.uniform(0.0, 10.0, (4, 2))))
+        to_goals, between = distances(starts, places), distances(places, places)
+        found = assign(to_goals, between)
+        assert (max(found.times), sum(found.times)) == pytest.approx(tried_all(to_goals, between))
+
+
 def test_each_goal_is_in_one_tour_and_the_times_are_those_of_the_tours():
     to_goals, between = scattered(1, 4, 40, 100.0)
     found = assign(to_goals, between)

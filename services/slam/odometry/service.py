@@ -176,7 +176,7 @@ class OdometryService(Service):
     def _compare(self, fix: MapFix) -> None:
         """Whether a match of a scan shows the motion that the wheels tell of."""
         t, matched = seconds(fix.timestamp), Pose2(fix.x, fix.y, fix.yaw)
-        if t == self._matched_at or not all(map(isfinite, matched)):
+        if t == self._matched_at or not all(map(isfinite, matched)) or not self._matched.reaches(t):
             return
         self._matched_at = t
         self._unseen = self._matched.compare(t, matched)

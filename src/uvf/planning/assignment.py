@@ -28,7 +28,7 @@ class Assignment(NamedTuple):
     times: list[float]
     """Of each vehicle: how long its tour takes [s]."""
     unreachable: list[int]
-    """Indices of goals to which no vehicle gets."""
+    """Indices of goals that are in no tour: no vehicle gets there, or none that can go on from its other goals."""
 
 
 def assign(to_goals: Floats, between: Floats, rounds: int = ROUNDS, seed: int = 0) -> Assignment:
@@ -71,7 +71,7 @@ class _Tours:
             others = [[goal for goal in tour if goal not in out] for tour in tours]
             missing = self._insert(others, rng.permutation(sorted({*out, *left})).tolist(), evenly=rng.random() < EVENLY)
             found = self._cost(others, missing)
-            if (len(missing), *found) <= (len(left), cost[0] + SAME, cost[1]):
+            if len(missing) < len(left) or (len(missing) == len(left) and _is_no_worse(found, cost)):
                 tours, left, cost = others, missing, found
         return Assignment(tours, [self._time(v, tour) for v, tour in enumerate(tours)], sorted(left))
 
@@ -112,3 +112,8 @@ class _Tours:
     def _cost(self, tours: list[list[int]], left: list[int]) -> Cost:
         times = [self._time(v, tour) for v, tour in enumerate(tours)]
         return max(times), sum(times)
+
+
+def _is_no_worse(found: Cost, cost: Cost) -> bool:
+    """The sum decides where the longest times are the same."""
+    return found[0] < cost[0] - SAME or (found[0] < cost[0] + SAME and found[1] <= cost[1])

@@ -63,8 +63,26 @@ def test_a_blow_is_no_slope():
     assert inclination.state[:2] == pytest.approx((0.0, 0.0), abs=0.06)
 
 
-def test_a_gyroscope_that_is_biased_does_not_tilt_a_vehicle_that_stands():
+@pytest.mark.parametrize("bias", [0.01, -0.05, 0.2])
+def test_a_gyroscope_that_is_biased_does_not_tilt_a_vehicle_that_stands(bias):
     inclination = Inclination()
     for _ in range(1500):
-        tilting = inclination.step(DT, np.array((0.01, -0.02, 0.0)), np.array((0.0, 0.0, GRAVITY)), (0.0, 0.0))
+        tilting = inclination.step(DT, np.array((0.01, bias, 0.0)), np.array((0.0, 0.0, GRAVITY)), (0.0, 0.0))
     assert tilting.rate == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("silent", [1.5, 3.0])
+@pytest.mark.parametrize("degrees", [8.0, 15.0])
+def test_a_slope_is_found_again_after_the_inertial_unit_was_silent(degrees, silent):
+    """Turning all the while; the filter is never told of those steps."""
+    inclination, doubted, one = Inclination(), 0, DriveFilter("ekf", Noise(), TRACK)
+    steps = list(on_a_slope(np.radians(degrees), 0.3, 1.0, 40.0))
+    for k, (rate, force, ways, _) in enumerate(steps):
+        if 1000 <= k < 1000 + silent / DT:
+            one.step(Step(DT, *ways))
+        else:
+            one.step(Step(DT, *ways, rate[2], force[0], *inclination.step(DT, rate, force, ways)))
+        doubted += one.doubt is not None
+    assert inclination.state[:2] == pytest.approx(steps[-1][3][:2], abs=0.15)
+    assert doubted * DT < 2.5
+    assert one.speeds[0] == pytest.approx(0.3, abs=0.02)

@@ -36,12 +36,12 @@ def test_each_episode_is_told_once_and_a_single_doubt_is_none():
     assert not episodes.active
 
 
-def driven(motion, speed, matched, start=0.0, until=8.0):
-    """What is found at each match, five times a second: the wheels roll at ``speed``, and scans are matched at ``matched(t)``."""
+def driven(motion, speed, matched, start=0.0, until=8.0, every=10):
+    """What is found at each match, every 0.2 s or as many steps: the wheels roll at ``speed``, and scans are matched at ``matched(t)``."""
     found = []
     for k in range(1, round(until / DT)):
         motion.roll(start + k * DT, speed * DT)
-        if k % 10 == 0:
+        if k % every == 0:
             found.append(motion.compare(start + k * DT, matched(k * DT)))
     return found
 
@@ -61,19 +61,29 @@ def test_a_correction_while_standing_is_no_slip():
 
 
 @pytest.mark.parametrize("back", [-0.5, -0.2, 0.5])
-def test_a_closed_loop_is_no_slip(back):
-    """The matches move by half a metre at once, while the vehicle drives at 0.2 m/s."""
-    assert not any(driven(MatchedMotion(), 0.2, lambda t: Pose2(0.2 * t + back * (t >= 4.0), 0.0, 0.0)))
+@pytest.mark.parametrize(("speed", "every"), [(0.2, 10), (0.6, 10), (1.5, 5), (0.4, 20), (0.3, 40)])
+def test_a_closed_loop_is_no_slip(back, speed, every):
+    """The matches move by half a metre at once."""
+    found = driven(MatchedMotion(), speed, lambda t: Pose2(speed * t + back * (t >= 4.0), 0.0, 0.0), until=12.0, every=every)
+    assert not any(found)
+
+
+@pytest.mark.parametrize("every", [5, 10, 20, 25, 30, 35, 40, 45, 50, 60, 75, 100])
+def test_slip_is_seen_however_often_scans_are_matched(every):
+    found = driven(MatchedMotion(), 0.4, lambda t: Pose2(0.5 * 0.4 * t, 0.0, 0.0), until=20.0, every=every)
+    assert all(found[-3:])
+    assert [one.speed for one in found[-3:]] == pytest.approx([0.2] * 3)
 
 
 def test_an_arc_is_no_slip():
     assert not any(driven(MatchedMotion(), 0.5, lambda t: move(IDENTITY, Twist(0.5, 1.5), t)))
 
 
-def test_time_that_begins_anew_compares_nothing():
+@pytest.mark.parametrize("back", [0.03, 0.1, 0.5, 100.0])
+def test_time_that_goes_back_compares_nothing(back):
     motion = MatchedMotion()
     driven(motion, 0.3, lambda t: Pose2(0.3 * t, 0.0, 0.0), 100.0)
-    assert not any(driven(motion, 0.3, lambda t: Pose2(0.3 * t - 5.0, 0.0, 0.0)))
+    assert not any(driven(motion, 0.3, lambda t: Pose2(0.3 * t - 5.0, 0.0, 0.0), 108.0 - back))
 
 
 @pytest.mark.parametrize("t", [-1.0, 8.5])

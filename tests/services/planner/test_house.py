@@ -19,7 +19,7 @@ from uvf.runtime.state.stop_all import StopVoice
 from uvf.runtime.time.lockstep import Lockstep
 
 VEHICLE = "burger"
-ROUND = 60.0  # s of exploring
+ROUND = 70.0  # s of exploring
 GOAL = (1.4, 0.9)  # m, world: in the living room, seen early
 
 
@@ -72,7 +72,7 @@ def explored():
 
 def test_drives_far_without_touching_anything(explored):
     places = explored.places()
-    assert np.hypot(*np.diff(places[:, 1:], axis=0).T).sum() >= 15.0
+    assert np.hypot(*np.diff(places[:, 1:], axis=0).T).sum() >= 17.5
     assert not any(m.touching for _, m in explored.kept["contact"])
 
 
@@ -106,7 +106,7 @@ def test_maps_half_of_the_house_and_maps_it_right(explored):
     inside = ((at >= 0) & (at < cells.shape[::-1])).all(axis=1)
     values = cells[at[inside, 1], at[inside, 0]]
     free, occupied = (values >= 0) & (values < 50), values >= 60
-    assert free.sum() / len(world) >= 0.5
+    assert free.sum() / len(world) >= 0.58
     assert occupied.sum() / free.sum() < 0.05
 
 

@@ -142,7 +142,10 @@ class DriveFilter:
         told = model.told(step, self.track)
         turn = model.turn_rate(self.kalman.x, told) * step.dt
         self.doubt = None
-        if not self._rests(step):
+        rests = self._rests(step)
+        if rests or step.rate is None:
+            self._doubted_for = 0.0
+        if not rests:
             self._roll(step, turn)
         told = model.told(step, self.track)
         x = self.kalman.x

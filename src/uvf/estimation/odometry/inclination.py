@@ -17,8 +17,9 @@ Floats = NDArray[np.float64]
 STEEP, BIAS = 2.0, 0.1  # m/s^2, 1 sigma at the start of gravity's parts, and of the biases
 SHAKEN, BIAS_WALK = 0.03, 1e-3  # m/s^2 per square root of s, by which they change beside what the gyroscope says
 FELT = 0.3  # m/s^2, 1 sigma of what is felt beside gravity and bias: skidding, bumps, the speed's changes
-STRUCK = 1.5  # m/s^2 of difference, from which on it is a blow
-SETTLING, STILL = 1.0, 0.03  # s at rest in which the gyroscope's mean counts for its bias; rad/s at which it is tilted instead
+STRUCK, BLOW = 1.5, 0.2  # m/s^2 of difference, from which on it is a blow; s after which it is none, but ground that was not felt before
+SETTLING = 1.0  # s at rest in which the gyroscope's mean counts for its bias
+FAST, SLOW, STEADY = 0.1, 0.5, 0.1  # s, of two means of what is felt at rest; m/s^2 by which they differ where it is being tilted
 
 
 class Tilting(NamedTuple):
@@ -35,22 +36,40 @@ class Inclination:
         self.state = np.zeros(4)
         """Gravity's parts forward and left, and the biases of the accelerometer there [m/s^2]."""
         self._p = np.diag((STEEP, STEEP, BIAS, BIAS)) ** 2
-        self._speed = 0.0
+        self._speed = self._struck_for = 0.0
         self._gyro_bias = np.zeros(2)
+        self._means: tuple[Floats, Floats] | None = None
 
     def step(self, dt: float, rate: Floats, force: Floats, ways: tuple[float, float]) -> Tilting:
         """How gravity's forward part has changed in the last ``dt`` [s].
 
         rate: (3,) rad/s, force: (3,) m/s^2 in the middle of the axle, both in the base frame; ways: m that the wheels have rolled.
         """
-        if ways == (0.0, 0.0) and np.abs(rate[:2] - self._gyro_bias).max() < STILL:
-            self._gyro_bias += (rate[:2] - self._gyro_bias) * min(dt / SETTLING, 1.0)
+        self._rest(dt, rate, force, ways == (0.0, 0.0))
         tilting = self._turn(dt, rate)
         speed = (ways[0] + ways[1]) / (2.0 * dt)
         accelerated = np.array(((speed - self._speed) / dt, speed * rate[2]))
         self._speed = speed
-        self._feel(force[:2] - accelerated)
+        self._feel(dt, force[:2] - accelerated)
         return tilting
+
+    def _rest(self, dt: float, rate: Floats, force: Floats, stands: bool) -> None:
+        """Learns the gyroscope's biases while the vehicle stands and is not tilted: what is felt stays the same."""
+        if not stands:
+            self._means = None
+            return
+        fast, slow = self._means or (force[:2], force[:2])
+        fast, slow = fast + (force[:2] - fast) * min(dt / FAST, 1.0), slow + (force[:2] - slow) * min(dt / SLOW, 1.0)
+        self._means = fast, slow
+        if np.abs(fast - slow).max() < STEADY:
+            self._gyro_bias += (rate[:2] - self._gyro_bias) * min(dt / SETTLING, 1.0)
+
+    def _begin_anew(self) -> None:
+        """Nothing is known of the slope."""
+        self.state[:2] = 0.0
+        self._p[:2, :] = self._p[:, :2] = 0.0
+        self._p[0, 0] = self._p[1, 1] = STEEP**2
+        self._struck_for = 0.0
 
     def _turn(self, dt: float, rate: Floats) -> Tilting:
         """Gravity turns against the vehicle: by yaw, and by roll and pitch, which are small."""
@@ -62,12 +81,16 @@ class Inclination:
         self._p = f @ self._p @ f.T + np.diag((SHAKEN, SHAKEN, BIAS_WALK, BIAS_WALK)) ** 2 * dt
         return Tilting((float(self.state[0]) - before) / dt, sqrt(left * abs(float(rate[2]))))
 
-    def _feel(self, felt: Floats) -> None:
+    def _feel(self, dt: float, felt: Floats) -> None:
         h = np.hstack((np.eye(2), np.eye(2)))
+        if float(np.hypot(self.state[0], self.state[1])) > GRAVITY or self._struck_for > BLOW:
+            self._begin_anew()
         off = felt - h @ self.state
         s = h @ self._p @ h.T + FELT**2 * np.eye(2)
         if np.abs(off).max() > STRUCK and np.abs(off).max() > 3.0 * sqrt(float(s[0, 0])):
+            self._struck_for += dt
             return
+        self._struck_for = 0.0
         gain = np.linalg.solve(s, h @ self._p).T
         self.state = self.state + gain @ off
         self._p = self._p - gain @ h @ self._p

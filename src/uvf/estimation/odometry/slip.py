@@ -13,6 +13,7 @@ LEAST = 0.02  # m/s, a smaller difference is none
 MEMORY = 0.3  # s, of the running mean
 BEGINS, ENDS = 0.1, 1.0  # s of doubt after which an episode begins, and without it after which it ends
 WINDOW, LEAST_WAY = 2.0, 0.15  # s and m: what the wheels rolled and the scans did not see
+LEAST_PARTS = 3  # between matches: one may be a loop that closes, and one alone says little
 BLUR, STANDS = 0.03, 1e-3  # m: by which matches of scans vary; of wheels that do not turn
 
 
@@ -71,24 +72,39 @@ class Unseen(NamedTuple):
     """m/s forward that they see."""
 
 
+class _Part(NamedTuple):
+    """Between two matches: s, its length; m, the signed way by the wheels, and what the scans miss of it."""
+
+    end: float
+    duration: float
+    way: float
+    missing: float
+
+
 class MatchedMotion:
     """Compares the way of the wheels with the motion between the poses that scans were matched at, over the last ``WINDOW``.
 
-    Between two matches, slip takes back no more than what the wheels have rolled: what a closed loop moves the vehicle by is no slip.
+    Between two matches, slip takes back no more than what the wheels have rolled, and the part that misses most does not count: what a
+    closed loop moves the vehicle by at once is no slip.
     """
 
     def __init__(self) -> None:
         self._rolled: deque[tuple[float, float]] = deque([(-inf, 0.0)])  # s, and signed way since the start [m]
         self._last: tuple[float, float, Pose2] | None = None
-        self._parts: deque[tuple[float, float, float]] = deque()  # end [s], signed way by the wheels [m], and what is missing of it [m]
+        self._parts: deque[_Part] = deque()
 
     def roll(self, t: float, way: float) -> None:
         """Adds what both wheels have rolled on average until ``t`` [s] since the last call; way: m, negative backwards."""
         if t <= self._rolled[-1][0]:
-            self._rolled.clear()
-        self._rolled.append((t, (self._rolled[-1][1] if self._rolled else 0.0) + way))
+            self._rolled, self._last = deque([(-inf, 0.0)]), None
+            self._parts.clear()
+        self._rolled.append((t, self._rolled[-1][1] + way))
         while t - self._rolled[0][0] > WINDOW:
             self._rolled.popleft()
+
+    def reaches(self, t: float) -> bool:
+        """Whether the wheels have told of ``t`` [s]; before, there is nothing to compare a match with."""
+        return t <= self._rolled[-1][0]
 
     def compare(self, t: float, map_from_base: Pose2) -> Unseen | None:
         """Motion that the scans do not see, None if they agree; called at each match, of a scan of ``t`` [s]."""
@@ -104,19 +120,21 @@ class MatchedMotion:
         ahead = seen.x * cos(seen.yaw / 2) + seen.y * sin(seen.yaw / 2)  # along the chord of an arc
         most = abs(way) + BLUR
         missing = min(max(copysign(1.0, way) * (way - ahead), -most), most) if abs(way) > STANDS else 0.0
-        self._parts.append((t, way, missing))
-        return self._unseen(t)
-
-    def _unseen(self, t: float) -> Unseen | None:
-        while self._parts and t - self._parts[0][0] > WINDOW - 1e-6:
+        self._parts.append(_Part(t, t - last[0], way, missing))
+        while len(self._parts) > LEAST_PARTS and sum(part.duration for part in list(self._parts)[1:]) >= WINDOW - 1e-6:
             self._parts.popleft()
-        if len(self._parts) < 2 or t - self._parts[0][0] < 0.8 * WINDOW:
+        return self._unseen()
+
+    def _unseen(self) -> Unseen | None:
+        duration = sum(part.duration for part in self._parts)
+        if len(self._parts) < LEAST_PARTS or duration < 0.8 * WINDOW:
             return None
-        length, missing = sum(abs(way) for _, way, _ in self._parts), sum(part for _, _, part in self._parts)
-        if missing < LEAST_WAY:
+        length, missing = sum(abs(part.way) for part in self._parts), sum(part.missing for part in self._parts)
+        if missing - max(part.missing for part in self._parts) < LEAST_WAY:
             return None
-        seen, ahead = length - missing, copysign(1.0, sum(way for _, way, _ in self._parts))
-        return Unseen(f"the wheels rolled {length:.2f} m in {WINDOW:.1f} s, the scans saw {seen:.2f} m", ahead * seen / WINDOW)
+        seen, ahead = length - missing, copysign(1.0, sum(part.way for part in self._parts))
+        cause = f"the wheels rolled {length:.2f} m in {duration:.1f} s, the scans saw {seen:.2f} m"
+        return Unseen(cause, ahead * seen / duration)
 
 
 def wheel_cause(name: str, told: float, expected: float) -> str:

@@ -20,7 +20,7 @@ from uvf.planning.navigation.routes import KnownFree, cells_of, one_after_the_ot
 Floats = NDArray[np.float64]
 Cells = NDArray[np.int8]
 
-AROUND = 1.0  # m
+AROUND = 5.5  # m
 OCCUPIED = 65  # per cent, from which on a cell of the map is an obstacle
 WALL = np.ones((3, 3), dtype=np.bool_)
 

@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from uvf.planning.smoothing import resample, way_along
+from uvf.planning.smoothing import first_part, resample, way_along
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 ROOM = 0.1  # m between two that pass each other
 AHEAD = 5.0  # m of the way that is worth looking at
+LOOKED = 30.0  # m of another one's way
 EVEN = 0.5  # m of difference in the ways to the passage, up to which the names decide
 JOINED = 0.4  # m between two narrow places that count as one passage
 
@@ -42,7 +43,9 @@ def give_way(own: Traveller, clearance: Floats, others: Sequence[Traveller]) -> 
     clearance: (n,) m from the points of its own path to the nearest obstacle.
     """
     along = way_along(own.path)
-    waits = [_wait(own, (along, clearance), other._replace(path=resample(other.path))) for other in others if len(other.path)]
+    waits = [
+        _wait(own, (along, clearance), other._replace(path=resample(first_part(other.path, LOOKED)))) for other in others if len(other.path)
+    ]
     return min((wait for wait in waits if wait is not None), default=None)
 
 
