@@ -125,9 +125,8 @@ class Errands:
     def drive(self, goal: Floats) -> tuple[bool, float, float]:
         """Whether the goal was reached, and truly so; its distance [m] at the start, and the time [s] that it took."""
         begun, x, y, _ = self.heard.true[-1]
-        arm, mode = ArmRequest(arm=True, source="bench"), ModeRequest(mode=Mode.MODE_MISSION, source="bench")
-        self._ask(topics.ARM, arm)
-        self._ask(topics.SET_MODE, mode)
+        self._ask(topics.ARM, ArmRequest(arm=True, source="bench"))
+        self._ask(topics.SET_MODE, ModeRequest(mode=Mode.MODE_MISSION, source="bench"))
         self._lockstep.run(begun + SETTLED)
         begun = self.heard.true[-1][0]
         replies = self._ask(topics.GOAL, GoalRequest(position=Vector3(x=goal[0], y=goal[1]), yaw=float("nan"), source="bench"))

@@ -39,10 +39,11 @@ class GoalDesk:
         return [self._preview(here[:2], request) for request in wanted[:PREVIEWS]] + [busy] * (len(wanted) - PREVIEWS)
 
     def _preview(self, here: Point, wanted: PreviewRequest) -> PreviewReply:
-        start = self.in_map((wanted.start.x, wanted.start.y)) if wanted.HasField("start") else here
-        if wanted.HasField("start") and (reason := self._planner.misplaced(start, "start")):
-            return PreviewReply(reason=reason)
-        if reason := self.refusal(start, wanted.position):
+        start, reason = here, ""
+        if wanted.HasField("start"):
+            start = self.in_map((wanted.start.x, wanted.start.y))
+            reason = self._planner.misplaced(start, "start")
+        if reason := reason or self.refusal(start, wanted.position):
             return PreviewReply(reason=reason)
         planned = self._planner.plan(start, self.in_map((wanted.position.x, wanted.position.y)))
         costs = self._planner.costs

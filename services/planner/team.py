@@ -42,10 +42,10 @@ class Teammates:
     @property
     def goals(self) -> list[OthersGoal]:
         """Where they go to explore [m, map]; among two that want the same, the one whose name comes first has it."""
-        exploring = {name: said.goal for name, said in self._said.items() if said.job == "explore" and said.state in AT_IT}
-        return [
-            OthersGoal(self._in_map(np.array((goal.x, goal.y))), name < self._own) for name, goal in exploring.items() if name != self._own
-        ]
+        others = {name: said for name, said in self._said.items() if name != self._own}
+        exploring = [(name, said.goal) for name, said in others.items() if said.job == "explore" and said.state in AT_IT]
+        places = self._in_map([(goal.x, goal.y) for _, goal in exploring]).tolist()
+        return [OthersGoal((x, y), name < self._own) for (name, _), (x, y) in zip(exploring, places, strict=True)]
 
     @property
     def travellers(self) -> list[Traveller]:
@@ -62,13 +62,13 @@ class Teammates:
     @property
     def discs(self) -> Floats:
         """(n, 3) what they cover and have covered lately, and maps may still show: x, y, radius [m, map]."""
-        been = {(name, place) for places in self._been for name, place in places.items()}
-        return np.array([(*self._in_map(np.array(place)), self._radius_of(name)) for name, place in sorted(been)]).reshape(-1, 3)
+        been = sorted({(name, place) for places in self._been for name, place in places.items()})
+        return np.column_stack((self._in_map([place for _, place in been]), [self._radius_of(name) for name, _ in been]))
 
     def _radius_of(self, name: str) -> float:
         said = self._said.get(name)
         return said.radius if said is not None and 0.0 < said.radius <= LARGEST else self._radius
 
-    def _in_map(self, place: Floats) -> Point:
-        x, y = transform(self._map_from_world, place[None])[0].tolist()
-        return x, y
+    def _in_map(self, places: list[Point]) -> Floats:
+        """(n, 2) m, of places [m, world]."""
+        return transform(self._map_from_world, np.array(places).reshape(-1, 2))

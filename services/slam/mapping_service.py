@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from schemas import topics
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MapSession, Odometry
+from services.slam.odometry.messages import pose_covariance
 from services.slam.placing_service import PlacingService, fix_message
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
@@ -30,7 +31,6 @@ from uvf.slam.resumable import Noting, Resumable
 
 Floats = NDArray[np.float64]
 
-YAW_YAW = 35  # index in a covariance (6, 6) of a pose, by rows
 LEAP, LEAP_TURN = 0.3, 0.1  # m, rad: a correction that moves the vehicle by more is told
 
 
@@ -104,7 +104,9 @@ class MappingService(PlacingService):
         try:
             self._odom_from_base = planar(now.frames.lookup(self._frame("odom"), self._frame("base_footprint")))
             if (reading := self._reading(now.scan, now.frames)) is not None:
-                out.fix, events = self._look(t, replace(reading, heading_variance=_heading_variance(now.odometry)))
+                if now.odometry is not None:
+                    reading = replace(reading, heading_variance=float(pose_covariance(now.odometry)[2, 2]))
+                out.fix, events = self._look(t, reading)
             self._placeless_since = None
         except FrameError as error:
             return self.Outputs(events=self._wait(t, str(error)))
@@ -191,9 +193,3 @@ class MappingService(PlacingService):
             return None
         self._session_time, self._kept = t, count
         return MapSession(timestamp=stamp(t), data=self._method.session().encoded("on the bus"))
-
-
-def _heading_variance(odometry: Odometry | None) -> float:
-    """rad^2, NaN where the odometry does not say."""
-    told = odometry.pose_covariance if odometry is not None else ()
-    return told[YAW_YAW] if len(told) == 36 else np.nan

@@ -64,13 +64,13 @@ class _Tours:
         tours: list[list[int]] = [[] for _ in self._first]
         nearest = np.min(np.array(self._first).reshape(len(tours), -1), axis=0)
         left = self._insert(tours, np.argsort(-nearest, kind="stable").tolist())
-        cost = self._cost(tours, left)
+        cost = self._cost(tours)
         for number in range(rounds if self._goals > 1 else 0):
             together = self._near[rng.integers(self._goals)] if number % 2 else rng.permutation(self._goals).tolist()
             out = together[: rng.integers(1, min(TAKEN_OUT, self._goals) + 1)]
             others = [[goal for goal in tour if goal not in out] for tour in tours]
             missing = self._insert(others, rng.permutation(sorted({*out, *left})).tolist(), evenly=rng.random() < EVENLY)
-            found = self._cost(others, missing)
+            found = self._cost(others)
             if len(missing) < len(left) or (len(missing) == len(left) and _is_no_worse(found, cost)):
                 tours, left, cost = others, missing, found
         return Assignment(tours, [self._time(v, tour) for v, tour in enumerate(tours)], sorted(left))
@@ -109,7 +109,7 @@ class _Tours:
         ways = (self._between[v][a][b] for a, b in pairwise(tour))
         return self._first[v][tour[0]] + sum(ways) if tour else 0.0
 
-    def _cost(self, tours: list[list[int]], left: list[int]) -> Cost:
+    def _cost(self, tours: list[list[int]]) -> Cost:
         times = [self._time(v, tour) for v, tour in enumerate(tours)]
         return max(times), sum(times)
 

@@ -48,7 +48,8 @@ TOO_LARGE = "the map is too large to plan on"
 OUTSIDE = "the vehicle is outside its map: its pose or the map is wrong"
 UNMAPPED = "the vehicle stands on ground that is not mapped, and no way leads from there to mapped ground; drive it there by hand"
 NO_WAY = "no way leads to the goal"
-NO_PLACE = "the goal is not a place: its coordinates must be finite"
+NOWHERE = "the {} is not a place: its coordinates must be finite"
+NO_PLACE = NOWHERE.format("goal")
 
 
 @dataclass(frozen=True)
@@ -157,7 +158,7 @@ class GlobalPlanner:
         if costs is None:
             return self.missing
         if not _is_place(point):
-            return f"the {name} is not a place: its coordinates must be finite"
+            return NOWHERE.format(name)
         cell = costs.cell(*point)
         if not costs.holds(cell):
             return f"the {name} lies outside the map"

@@ -82,7 +82,5 @@ def asked(x, y, yaw=float("nan")):
 
 
 def preview(x, y, start=None):
-    position = world(x, y)
-    begin = None if start is None else world(*start)
-    begin = None if begin is None else Vector3(x=begin[0], y=begin[1])
-    return PreviewRequest(position=Vector3(x=position[0], y=position[1]), start=begin, source="test")
+    position, begin = (Vector3(**dict(zip("xy", world(*place), strict=True))) if place else None for place in ((x, y), start))
+    return PreviewRequest(position=position, start=begin, source="test")

@@ -153,12 +153,12 @@ class DriveFilter:
         noise = model.pose_noise(x, step, self.noise, self._turn_rate * step.dt, self.track)
         self.kalman.move(lambda point: model.moved(point, told), model.moved_jacobian(x, told), noise)
         if step.dt > GAP:
-            self._forget_speed()
+            self._doubt(SPEED, START_SPEED)  # what the wheels have told is its mean speed, not that of its end
 
-    def _forget_speed(self) -> None:
-        """After a gap, for what the wheels have told is its mean speed, not that of its end; and after the accelerometer told it wrong."""
-        self.kalman.P[SPEED, :] = self.kalman.P[:, SPEED] = 0.0
-        self.kalman.P[SPEED, SPEED] = START_SPEED**2
+    def _doubt(self, state: int, sigma: float) -> None:
+        """Makes one of the states as unsure as ``sigma``, and independent of all others."""
+        self.kalman.P[state, :] = self.kalman.P[:, state] = 0.0
+        self.kalman.P[state, state] = sigma**2
 
     def _drive(self, step: Step) -> None:
         kalman, gnss = self.kalman, self._gnss
@@ -223,9 +223,8 @@ class DriveFilter:
         if abs(float(self.kalman.x[SPEED])) <= max(abs(left), abs(right)) + OUTRUNS:
             return
         self.kalman.x[SPEED] = (left + right) / 2
-        self._forget_speed()
-        self.kalman.P[ACCEL_OFFSET, :] = self.kalman.P[:, ACCEL_OFFSET] = 0.0
-        self.kalman.P[ACCEL_OFFSET, ACCEL_OFFSET] = self.noise.offset_start**2
+        self._doubt(SPEED, START_SPEED)
+        self._doubt(ACCEL_OFFSET, self.noise.offset_start)
         self._watches = {LEFT: WheelWatch(), RIGHT: WheelWatch()}
 
     def _mean_of_wheels(self, step: Step, variances: tuple[float, float]) -> None:

@@ -73,9 +73,8 @@ class Unseen(NamedTuple):
 
 
 class _Part(NamedTuple):
-    """Between two matches: s, its length; m, the signed way by the wheels, and what the scans miss of it."""
+    """Between two matches: s, how long; m, the signed way by the wheels, and what the scans miss of it."""
 
-    end: float
     duration: float
     way: float
     missing: float
@@ -120,13 +119,17 @@ class MatchedMotion:
         ahead = seen.x * cos(seen.yaw / 2) + seen.y * sin(seen.yaw / 2)  # along the chord of an arc
         most = abs(way) + BLUR
         missing = min(max(copysign(1.0, way) * (way - ahead), -most), most) if abs(way) > STANDS else 0.0
-        self._parts.append(_Part(t, t - last[0], way, missing))
-        while len(self._parts) > LEAST_PARTS and sum(part.duration for part in list(self._parts)[1:]) >= WINDOW - 1e-6:
+        self._parts.append(_Part(t - last[0], way, missing))
+        while len(self._parts) > LEAST_PARTS and self._duration - self._parts[0].duration >= WINDOW - 1e-6:
             self._parts.popleft()
         return self._unseen()
 
+    @property
+    def _duration(self) -> float:
+        return sum(part.duration for part in self._parts)
+
     def _unseen(self) -> Unseen | None:
-        duration = sum(part.duration for part in self._parts)
+        duration = self._duration
         if len(self._parts) < LEAST_PARTS or duration < 0.8 * WINDOW:
             return None
         length, missing = sum(abs(part.way) for part in self._parts), sum(part.missing for part in self._parts)

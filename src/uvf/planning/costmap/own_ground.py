@@ -40,8 +40,8 @@ def ground_below(costs: Costmap, start: Cell, radius: float) -> tuple[Window, Ma
 
 
 def around(cell: Cell, n: int) -> Window:
-    """The window of ``n`` cells on every side of a cell, as far as the map has them."""
-    row, column = (slice(max(i - n, 0), i + n + 1) for i in cell)
+    """The window of ``n`` cells on every side of a cell, as far as the map has them; the cell may lie beside it."""
+    row, column = (slice(max(i - n, 0), max(i + n + 1, 0)) for i in cell)
     return row, column
 
 

@@ -12,6 +12,7 @@ from uvf.planning.costmap.costmap import Frame
 from uvf.planning.costmap.hidden_obstacles import HiddenObstacles
 from uvf.planning.costmap.inflation import FREE_SPACE, LETHAL
 from uvf.planning.costmap.obstacle_layer import ObstacleLayer
+from uvf.planning.costmap.own_ground import around
 from uvf.planning.costmap.zone_mask import KEPT_OUT, ZoneMask
 from uvf.planning.global_planner import GlobalPlanner
 from uvf.planning.navigation.navigator import NavigationGoal, Route
@@ -106,13 +107,14 @@ class GlobalRoutes:
         at, inside = cells_of(path, frame, cells.shape)
         if not len(at):
             return out
-        around = ceil(AROUND / frame[0])
-        first, last = np.maximum(at.min(axis=0) - around, 0), at.max(axis=0) + around + 1
+        reach = ceil(AROUND / frame[0])
+        first, last = np.maximum(at.min(axis=0) - reach, 0), at.max(axis=0) + reach + 1
         taken = cells[first[0] : last[0], first[1] : last[1]] >= OCCUPIED
         rows, columns = np.indices(taken.shape, sparse=True)
         for x, y, radius in team.tolist():
-            column, row = ((place - low) / frame[0] - 0.5 for place, low in zip((x, y), frame[1], strict=True))
-            taken[np.hypot(rows + first[0] - row, columns + first[1] - column) * frame[0] <= radius] = False
+            column, row = ((place - low) / frame[0] - 0.5 - begin for place, low, begin in zip((x, y), frame[1], first[::-1], strict=True))
+            window = around((int(row), int(column)), ceil(radius / frame[0]) + 1)
+            taken[window][np.hypot(rows[window[0]] - row, columns[:, window[1]] - column) * frame[0] <= radius] = False
         out[inside] = ((distance_field(taken) - 0.5) * frame[0])[tuple((at - first).T)]
         return out
 
