@@ -57,7 +57,7 @@ def _write(group: str, cases: Sequence[str], rows: Figures, facts: BenchmarkFact
     """Some cases of a group have a section of their own, beside that of the whole group."""
     page = RESULTS.read_text(encoding="utf-8") if RESULTS.exists() else "# Results\n"
     lines = [facts.line(), *notes_of(group), *verdicts(group, rows)]
-    RESULTS.write_text(replace_section(page, " ".join([group, *cases]), rows, lines), encoding="utf-8")
+    RESULTS.write_text(replace_section(page, " ".join([group, *sorted(cases)]), rows, lines), encoding="utf-8")
 
 
 def _chosen(group: str, wanted: Sequence[str], data: Path | None, selection: Selection) -> dict[str, Case]:

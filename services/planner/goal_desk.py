@@ -30,8 +30,7 @@ class GoalDesk:
 
     def refusal(self, here: Point, place: Vector3) -> str:
         """Why a vehicle that is at ``here`` [map] cannot be sent to a place [m, world]; "" if it can."""
-        point = place.x, place.y
-        return self._beyond(point) or self._planner.refusal(here, self.in_map(point))
+        return self._beyond(place) or self._planner.refusal(here, self.in_map((place.x, place.y)))
 
     def previews(self, here: Pose2, wanted: list[PreviewRequest]) -> list[PreviewReply]:
         """The ways as they would be driven now, or why there is none; from ``here`` [map] where no start is given."""
@@ -39,11 +38,12 @@ class GoalDesk:
         return [self._preview(here[:2], request) for request in wanted[:PREVIEWS]] + [busy] * (len(wanted) - PREVIEWS)
 
     def _preview(self, here: Point, wanted: PreviewRequest) -> PreviewReply:
-        start, reason = here, ""
         if wanted.HasField("start"):
             start = self.in_map((wanted.start.x, wanted.start.y))
-            reason = self._planner.misplaced(start, "start")
-        if reason := reason or self.refusal(start, wanted.position):
+            reason = self._misplaced(wanted.start, "start") or self._misplaced(wanted.position)
+        else:
+            start, reason = here, self.refusal(here, wanted.position)
+        if reason:
             return PreviewReply(reason=reason)
         planned = self._planner.plan(start, self.in_map((wanted.position.x, wanted.position.y)))
         costs = self._planner.costs
@@ -55,10 +55,14 @@ class GoalDesk:
         reply.poses.extend(line_of(self._world_from_map, planned.path))
         return reply
 
-    def _beyond(self, wanted: Point) -> str:
+    def _misplaced(self, place: Vector3, name: str = "goal") -> str:
+        """Why a vehicle cannot stand at a place [m, world]; empty if it can."""
+        return self._beyond(place, name) or self._planner.misplaced(self.in_map((place.x, place.y)), name)
+
+    def _beyond(self, place: Vector3, name: str = "goal") -> str:
         """Why a place lies too near to the fence, or outside of it; empty if it does not."""
-        room = inf if self.bounds is None else fencing(self.bounds).region.at(wanted)
+        room = inf if self.bounds is None else fencing(self.bounds).region.at((place.x, place.y))
         if room < 0:
-            return f"the goal is {-room:.1f} m outside of the fence"
+            return f"the {name} is {-room:.1f} m outside of the fence"
         needed = self._planner.body.footprint.circumscribed_radius
-        return f"the goal is {room:.2f} m from the fence, too near" if room < needed else ""
+        return f"the {name} is {room:.2f} m from the fence, too near" if room < needed else ""

@@ -89,9 +89,9 @@ class ObstacleSensors:
         step = int(np.ceil(np.sqrt(len(depths) / PIXELS)))
         rows = np.arange(info.height)[::step, None] * info.width + np.arange(info.width)[::step]
         rays, depths = rays[rows.ravel()], depths[rows.ravel()]
-        near = (depths > 0.0) & (depths <= DEPTH_REACH)
-        x, y, _ = base_from_optical.translation.tolist()
-        sight = depth_sight((x, y), apply(base_from_optical, rays[near] * depths[near, None]), self._top)
+        x, y, z = base_from_optical.translation.tolist()
+        ends = apply(base_from_optical, (rays * depths[:, None])[depths > 0.0])
+        sight = depth_sight((x, y, z), ends, self._top, DEPTH_REACH)
         self._waiting.append((seconds(picture.timestamp), "depth camera", sight))
 
     def _hear(self, reading: Range) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from schemas import topics
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MapSession, Odometry
-from services.slam.odometry.messages import pose_covariance
+from services.slam.odometry.messages import rate_sigmas
 from services.slam.placing_service import PlacingService, fix_message
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
@@ -105,7 +105,7 @@ class MappingService(PlacingService):
             self._odom_from_base = planar(now.frames.lookup(self._frame("odom"), self._frame("base_footprint")))
             if (reading := self._reading(now.scan, now.frames)) is not None:
                 if now.odometry is not None:
-                    reading = replace(reading, heading_variance=float(pose_covariance(now.odometry)[2, 2]))
+                    reading = replace(reading, rate_sigmas=rate_sigmas(now.odometry))
                 out.fix, events = self._look(t, reading)
             self._placeless_since = None
         except FrameError as error:

@@ -9,7 +9,7 @@ from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.hidden_obstacles import REMEMBERED, HiddenObstacles, unexplained
 from uvf.planning.costmap.range_sights import cone_sight, depth_sight
 
-EYE, HEIGHT, TOP = (0.1, 0.0), 0.2, 0.35
+EYE, HEIGHT, TOP, REACH = (0.1, 0.0), 0.2, 0.35, 3.0
 BOX = RobotFootprint.polygon(np.array(((0.2, 0.15), (-0.2, 0.15), (-0.2, -0.15), (0.2, -0.15))))
 HERE = Pose2(0.0, 0.0, 0.0)
 
@@ -28,7 +28,7 @@ def pictured(low, high, ahead, half=0.3, reach=3.0):
 
 def obstacles(points, hidden=None):
     hidden = hidden or HiddenObstacles(8.0, 0.05, 30.0)
-    hidden.see("depth camera", (1.0, 1.0), HERE, depth_sight(EYE, points, TOP))
+    hidden.see("depth camera", (1.0, 1.0), HERE, depth_sight((*EYE, HEIGHT), points, TOP, REACH))
     return hidden.points(1.0, (0.0, 0.0), 4.0)
 
 
@@ -59,8 +59,55 @@ def test_ground_seen_free_clears_what_was_there_but_not_below_the_picture():
     assert len(obstacles(pictured(0.0, 0.0, ahead=9.0), hidden)) == len(before)
 
 
+def profile_seen(slopes, pitch=0.0, height=HEIGHT):
+    """What a depth camera pitched by ``pitch`` [rad, up] sees of ground that is level about it and has ``slopes`` [m, m] from there on."""
+    left, up = np.meshgrid(np.tan(np.linspace(-0.5, 0.5, 81)), np.tan(np.linspace(-0.5, 0.5, 61) + pitch))
+    x, z = np.arange(0.0, 20.0, 0.002), np.zeros(10_000)
+    for ahead, rise in slopes:
+        z += np.where(x > ahead, rise(x - ahead), 0.0)
+    points = []
+    for across, steep in zip(left.ravel(), up.ravel(), strict=True):
+        below = np.flatnonzero(height + steep * x <= z)
+        if len(below):
+            forward = x[below[0]]
+            points.append((EYE[0] + forward, across * forward, height + steep * forward))
+    return np.array(points)
+
+
+def cliff(depth):
+    return lambda beyond: np.full_like(beyond, -depth)
+
+
+DROPS = [(0.5, 0.1), *((ahead, depth) for ahead in (0.25, 0.5, 0.7) for depth in (0.2, 0.4, 2.5))]
+
+
+@pytest.mark.parametrize(("ahead", "depth"), DROPS)
+def test_the_edge_from_which_the_floor_drops_is_in_the_way(ahead, depth):
+    found = obstacles(profile_seen([(ahead, cliff(depth))]))
+    first_seen = HEIGHT / np.tan(0.5)
+    assert len(found) >= 8
+    assert found[:, 0].min() == pytest.approx(EYE[0] + max(ahead, first_seen), abs=0.06)
+
+
+@pytest.mark.parametrize("slope", [-0.2, -0.12, 0.0], ids=["11 deg", "7 deg", "level"])
+@pytest.mark.parametrize("ahead", [0.0, 0.4, 1.0, 2.0])
+def test_a_ramp_that_leads_down_is_no_drop(ahead, slope):
+    assert len(obstacles(profile_seen([(ahead, lambda beyond: slope * beyond)]))) == 0
+
+
+def test_a_kerb_to_roll_down_is_no_drop_nor_floor_that_a_braking_vehicle_nods_to():
+    assert len(obstacles(profile_seen([(0.6, cliff(0.03))]))) == 0
+    assert len(obstacles(profile_seen([(0.0, lambda beyond: -0.05 * beyond)], pitch=-0.05))) == 0
+
+
+def test_a_drop_too_far_to_tell_from_a_hidden_ramp_is_told_of_from_nearer():
+    far, near = (obstacles(profile_seen([(ahead, cliff(0.4))])) for ahead in (1.6, 0.6))
+    assert len(far) == 0
+    assert len(near) > 0
+
+
 def test_of_nothing_a_camera_tells_nothing():
-    sight = depth_sight(EYE, np.zeros((0, 3)), TOP)
+    sight = depth_sight((*EYE, HEIGHT), np.zeros((0, 3)), TOP, REACH)
     assert sight.starts.shape == sight.ends.shape == (0, 2)
 
 

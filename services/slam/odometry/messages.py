@@ -1,5 +1,7 @@
 """The estimates as messages."""
 
+from math import isfinite, sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -48,6 +50,15 @@ def pose_covariance(told: Odometry) -> Floats:
     found = np.array(told.pose_covariance).reshape(6, 6)[np.ix_(PLANAR, PLANAR)]
     is_one = bool(np.isfinite(found).all()) and np.allclose(found, found.T) and np.linalg.eigvalsh(found)[0] > -1e-9
     return found if is_one else np.zeros((3, 3))
+
+
+def rate_sigmas(told: Odometry) -> tuple[float, float] | None:
+    """1 sigma of the speed [m/s], sideways too, and of the turn rate [rad/s]; None where the message has none."""
+    if len(told.velocity_covariance) != 36:
+        return None
+    forward, sideways, turn = np.diag(np.array(told.velocity_covariance).reshape(6, 6))[list(PLANAR)].tolist()
+    is_one = all(isfinite(variance) and variance > 0.0 for variance in (forward, sideways, turn))
+    return (sqrt(forward + sideways), sqrt(turn)) if is_one else None
 
 
 def moving(t: float, vehicle: str, odom_from_base: Pose2) -> FrameTransform:

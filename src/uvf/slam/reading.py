@@ -1,7 +1,6 @@
 """What a 2-D SLAM method is fed with: a scan of ranges and where the odometry has the vehicle at its stamp."""
 
 from dataclasses import dataclass, field
-from math import nan, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,15 +36,15 @@ class Beams:
 class Reading:
     """One scan of a lidar with the odometry's pose at its end.
 
-    t: stamp of its last beam [s]; ranges: (n,) [m]; odom_from_base: by the odometry at ``t``; heading_variance: of that pose's yaw
-    [rad^2], as the odometry has it, NaN where it does not say.
+    t: stamp of its last beam [s]; ranges: (n,) [m]; odom_from_base: by the odometry at ``t``; rate_sigmas: 1 sigma of its speed [m/s] and
+    turn rate [rad/s], None where it does not say.
     """
 
     t: float
     ranges: Floats
     beams: Beams
     odom_from_base: Pose2
-    heading_variance: float = nan
+    rate_sigmas: tuple[float, float] | None = None
 
     @property
     def returned(self) -> NDArray[np.bool_]:
@@ -54,10 +53,13 @@ class Reading:
             found: NDArray[np.bool_] = (self.ranges > max(self.beams.range_min, 0.0)) & (self.ranges < self.beams.range_max)
         return found
 
-    def heading_sigma_since(self, before: "Reading") -> float | None:
-        """1 sigma [rad] of the turn since a reading before, as the odometry has it; None where it does not say.
+    def claimed_since(self, before: "Reading") -> tuple[float, float] | None:
+        """1 sigma (position [m], heading [rad]) of the motion since a reading before, as the odometry has it; None where it does not say.
 
-        An odometry that is never corrected grows less certain with every step; one that says otherwise says nothing.
+        As if its speeds had been off the same way all the time, as they are by a bias. What its pose's covariance has grown by would say
+        less: an error that goes on as before makes it grow by as much as everything before has made it.
         """
-        growth = self.heading_variance - before.heading_variance
-        return sqrt(growth) if growth > 0.0 else None
+        if self.rate_sigmas is None:
+            return None
+        speed, turn_rate = self.rate_sigmas
+        return speed * (self.t - before.t), turn_rate * (self.t - before.t)

@@ -7,6 +7,7 @@ from schemas import topics
 from schemas.messages import CancelRequest, GoalRequest, Mode, NavStatus, Vector3
 from services.autopilot.ground.build import hosts
 from services.planner.build import build as build_planner
+from services.planner.exploration_goals import SETTLING
 from services.sim_ground.build import build as build_simulator
 from services.slam.build import build as build_slam
 from tests.runtime.outcome import ask
@@ -19,7 +20,7 @@ from uvf.runtime.state.stop_all import StopVoice
 from uvf.runtime.time.lockstep import Lockstep
 
 VEHICLE = "burger"
-ROUND = 70.0  # s of exploring
+ROUND = SETTLING + 70.0  # s, of exploring the latter
 GOAL = (1.4, 0.9)  # m, world: in the living room, seen early
 
 

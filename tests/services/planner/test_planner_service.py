@@ -18,7 +18,7 @@ from schemas.messages import (
 from services.planner.params import PlannerParams
 from tests.runtime.stepping import recall, stale
 from tests.services.live_params import all_settable_are_read
-from tests.services.planner.planner_bench import CANCEL, START, Bench, asked, planner, world
+from tests.services.planner.planner_bench import CANCEL, START, Bench, asked, planner, preview, world
 from tests.services.planner.plans import room
 from uvf.planning import global_planner
 from uvf.planning.search.grid_search import GridSearch
@@ -43,6 +43,9 @@ def test_a_goal_beyond_the_fence_is_refused():
         bench = Bench().step(bounds=fence, goal=[goal])
         assert why in bench.said["goal"][0].reason
     assert Bench().step(bounds=fence, goal=[asked(3.0, 2.0)]).said["goal"][0].accepted
+    beyond, inside = Bench().step(bounds=fence, preview=[preview(3.0, 2.0, start) for start in ((2.0, 2.0), (3.2, 2.0))]).said["preview"]
+    assert "the start is 0.5 m outside of the fence" in beyond.reason
+    assert inside.accepted
 
 
 def test_a_goal_gets_a_path_in_the_world_frame():

@@ -90,7 +90,7 @@ class GraphSlam:
         if stood and not (self._matched is None or _changed(self._matched, reading)):
             self._pose = compose(self._pose, step)
             return self._place(self.quality)
-        claimed = reading.heading_sigma_since(last) if last is not None else None
+        claimed = reading.claimed_since(last) if last is not None else None
         return self._track(reading, OdometryMotion(self._pose, step, self.tracker.noise, stood, claimed))
 
     def _track(self, reading: Reading, motion: OdometryMotion) -> SlamEstimate:
@@ -200,7 +200,7 @@ class GraphSlam:
         turn = turned(self.nodes.poses[self._near].yaw)
         matched = turn.T @ found.information @ turn * (DOUBTED if self._doubted else 1.0)
         noise = self.tracker.trust.usual(self.tracker.noise) if is_thin else self.tracker.noise
-        claimed = reading.heading_sigma_since(before.reading) if is_thin else None
+        claimed = reading.claimed_since(before.reading) if is_thin else None
         told = UNKNOWN.information(way) if self._blind else noise.information(way, claimed)
         position, heading, per_turn = EDGE_FLOOR
         floor = np.diag((position, position, heading + per_turn * abs(moved[2]))) ** 2

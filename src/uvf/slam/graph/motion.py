@@ -11,8 +11,11 @@ from uvf.maths.se2 import Pose2, compose
 Floats = NDArray[np.float64]
 
 
-ALLOWANCE, LEAST_HEADING = 3.0, 3e-4
-"""Times what an odometry says of its turn, and rad at least, that it is off."""
+Sigmas = tuple[float, float]
+"""1 sigma of position [m] and heading [rad]."""
+
+ALLOWANCE, LEAST_OFF = 3.0, (2e-3, 3e-4)
+"""Times what an odometry says of a step, and m and rad at least, that it is off."""
 
 
 @dataclass(frozen=True)
@@ -22,19 +25,21 @@ class MotionNoise:
     position: tuple[float, float, float] = (0.005, 0.1, 0.03)
     heading: tuple[float, float, float] = (0.003, 0.02, 0.15)
 
-    def sigmas(self, step: Pose2) -> tuple[float, float]:
-        """1 sigma (position [m], heading [rad]) of a step."""
+    def sigmas(self, step: Pose2) -> Sigmas:
+        """Of a step."""
         way = np.array((1.0, hypot(step[0], step[1]), abs(step[2])))
         return float(way @ self.position), float(way @ self.heading)
 
-    def information(self, step: Pose2, claimed: float | None = None) -> Floats:
+    def information(self, step: Pose2, claimed: Sigmas | None = None) -> Floats:
         """Information (3, 3) of (x, y, yaw) of a step [1/m^2, 1/rad^2].
 
-        claimed: 1 sigma of its turn [rad] as the odometry has it; it counts with some allowance where it is the smaller one.
+        claimed: as the odometry has it; that counts with some allowance where it is the smaller one.
         """
         position, heading = self.sigmas(step)
         if claimed is not None:
-            heading = min(heading, max(ALLOWANCE * claimed, LEAST_HEADING))
+            position, heading = (
+                min(usual, max(ALLOWANCE * said, least)) for usual, said, least in zip((position, heading), claimed, LEAST_OFF, strict=True)
+            )
         return np.diag((position**-2, position**-2, heading**-2))
 
 
@@ -46,14 +51,14 @@ UNKNOWN = MotionNoise((0.25, 0.1, 0.03), (0.25, 0.02, 0.15))
 class OdometryMotion:
     """A step of odometry from the pose ``before`` (map_from_base).
 
-    disputed: something tells that the step is wrong; claimed: 1 sigma of its turn [rad] as the odometry has it, None where it does not say.
+    disputed: something tells that the step is wrong; claimed: how far off it is as the odometry has it, None where it does not say.
     """
 
     before: Pose2
     step: Pose2
     noise: MotionNoise
     disputed: bool = False
-    claimed: float | None = None
+    claimed: Sigmas | None = None
 
     @property
     def guess(self) -> Pose2:
@@ -61,8 +66,8 @@ class OdometryMotion:
         return compose(self.before, self.step)
 
     @property
-    def sigmas(self) -> tuple[float, float]:
-        """1 sigma (position [m], heading [rad]) of the step."""
+    def sigmas(self) -> Sigmas:
+        """Of the step."""
         return self.noise.sigmas(self.step)
 
     @property

@@ -29,6 +29,8 @@ INCREDIBLE, FIRM = 8.0, 0.75
 """Surprise above which a match must have such a share: half a sweep fits into vegetation at many places."""
 PLAIN_SHARE, PLAIN_RMS = 0.8, 0.025
 """Sweeps that fit better show how far the odometry is off; in vegetation and crowds it is the sweeps that are."""
+HELD = 5.0
+"""Sigmas of its motion beyond which no place is looked for where little is seen: the odometry says how it has moved, and people walk."""
 LEAP, LEAP_TURN = 0.3, 0.3  # m, rad: a match that moves the prediction by more is doubted
 SIDE, TURN, SIGMAS = 0.35, 0.45, 3.0
 """m, rad: the window that is searched when a match is doubted, or so many sigmas of the odometry's step if these are more."""
@@ -84,7 +86,7 @@ class Tracker:
         found = self._found(local, motion, cloud)
         if motion.disputed or (motion.told and self._doubts(found)):
             other = self._found(local, OdometryMotion(motion.before, IDENTITY, UNKNOWN), cloud)
-            wins = _is_better(other, found) if motion.disputed else self._wins(motion, other, found)
+            wins = _is_better(other, found) if motion.disputed else self._wins((motion, cloud), other, found)
             if wins and not self._doubts(other):
                 found = other
         doubted = self._doubts(found)
@@ -123,10 +125,13 @@ class Tracker:
         if place is None:
             return doubted
         other = match(place.pose, cloud, local.surfaces, 0.1 * motion.information)
-        return other if self._wins(motion, other, doubted) else doubted
+        return other if self._wins((motion, cloud), other, doubted) else doubted
 
-    def _wins(self, motion: OdometryMotion, other: Match, found: Match) -> bool:
+    def _wins(self, seen: tuple[OdometryMotion, Cloud], other: Match, found: Match) -> bool:
         """Whether the other one fits better by more than where it lies surprises."""
+        motion, cloud = seen
+        if cloud.is_thin and motion.claimed is not None and self.trust.sigmas_off(motion, other.map_from_base) > HELD:
+            return False
         surprise = self.trust.surprise(motion, other.map_from_base)
         if surprise > INCREDIBLE and other.share < FIRM:
             return False

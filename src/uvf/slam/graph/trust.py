@@ -79,6 +79,12 @@ class Trust:
         """
         return self.usual(motion.noise).information(motion.step, motion.claimed) if motion.told else motion.information
 
+    def sigmas_off(self, motion: OdometryMotion, found: Pose2) -> float:
+        """How far the pose ``found`` is from where the motion leads, in sigmas of ``information`` [-]."""
+        guess = motion.guess
+        off = np.array((found[0] - guess[0], found[1] - guess[1], wrap(found[2] - guess[2])))
+        return sqrt(float(off @ self.information(motion) @ off))
+
     def surprise(self, motion: OdometryMotion, found: Pose2) -> float:
         """How unlikely the pose ``found`` is after the motion [-]: log(1 + d^2) of its distance d in sigmas.
 
