@@ -2,7 +2,8 @@
 
 The robot and the scanner (720 beams) are those of BARN, among posts that stand and discs that move. Times are CPU time of the planning
 thread, after one round that warms up. ``costmap`` marks and clears by all beams and inflates 100 x 100 cells; ``window`` adds the way to
-go, the way off the path and the shut headings on a window of 6 m; ``mppi 2000 x 56`` draws so many futures of so many steps, at places where nothing moves, and then among six discs that do.
+go, the way off the path and the shut headings on a window of 6 m; ``mppi 2000 x 56`` draws so many futures of so many steps, at places
+where nothing moves, and then among six discs that do.
 """
 
 from collections.abc import Iterator

@@ -2,15 +2,17 @@
 
 In lockstep. Goals lie on the floor that the rover can reach and its map knows. ``reached %``: it says so, and truly is within 0.3 m.
 ``m``, ``s``: straight distance and time of those that were reached. ``closest m``: least true distance of its outline to anything;
-``touched``: whether its bumper says so. The truth draws the goals and judges, and nobody else hears it. A rover that a failsafe has
-put on hold, or disarmed, has missed its goal, and is told to go on before the next one, as an operator would do.
+``touched``: goals on the way to which its bumper says so. The truth draws the goals and judges, and nobody else hears it. A rover
+that a failsafe has put on hold, or disarmed, has missed its goal, and is told to go on before the next one, as an operator would do.
+One that has been knocked over (``tipped``) has missed its goal too; another one explores the world anew and takes the rest.
 """
 
 import tempfile
 from dataclasses import dataclass, field
 from functools import partial
+from math import acos
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import yaml
@@ -23,6 +25,7 @@ from launch.commands.bench_selection import Selection
 from schemas import topics
 from schemas.messages import ArmRequest, Contact, GoalRequest, Grid, Mode, ModeRequest, NavState, NavStatus, Reply, Vector3
 from schemas.topics import Request
+from uvf.maths.rotations import rotate
 from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.urdf.model import load_urdf
@@ -30,7 +33,7 @@ from uvf.models.urdf.outline import plan_outline
 from uvf.models.world.geometry import FloorPlan, floor_plan, reachable_floor
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.runtime.bus.interface import Sample
-from uvf.runtime.messages.convert import occupancy_cells, yaw_of
+from uvf.runtime.messages.convert import occupancy_cells, wxyz, yaw_of
 from uvf.runtime.time.lockstep import Lockstep
 
 Floats = NDArray[np.float64]
@@ -50,6 +53,7 @@ GOALS = 50
 PATIENCE = 300.0  # s for a goal, across the plaza at 0.4 m/s too
 THERE = 0.3  # m
 SETTLED = 0.2  # s after a change of the mode
+TIPPED = 1.0  # rad from upright
 APART = 0.15  # m beyond the rover's radius that a goal lies from obstacles
 CELL = 0.05  # m
 WORLDS = tuple(f"goals:{world}" for world in BEGUN)
@@ -64,6 +68,7 @@ class Heard:
     grid: Grid = field(default_factory=Grid)
     true: list[tuple[float, float, float, float]] = field(default_factory=list)
     touched: bool = False
+    tilt: float = 0.0  # rad from upright
 
     def listen(self, lockstep: Lockstep) -> None:
         """From now on."""
@@ -84,6 +89,7 @@ class Heard:
     def _truth(self, sample: Sample) -> None:
         state = NavState.FromString(sample.payload)
         self.true.append((sample.stamp_ns / 1e9, state.position.x, state.position.y, yaw_of(state.orientation)))
+        self.tilt = acos(min(max(float(rotate(wxyz(state.orientation), np.eye(3)[2])[2]), -1.0), 1.0))
 
     def _contact(self, sample: Sample) -> None:
         self.touched |= Contact.FromString(sample.payload).touching
@@ -175,23 +181,42 @@ def closest(plan: FloorPlan, footprint: RobotFootprint, poses: Floats) -> float:
     return least - CELL / 4
 
 
+class Driven(NamedTuple):
+    """What became of a goal: reached or not, its straight distance [m], time [s], and whether something was touched on the way."""
+
+    reached: bool
+    way: float
+    took: float
+    touched: bool
+
+
 def errands(world: str, selection: Selection, data: Path | None) -> Figures:
     """The row of a world."""
+    goals, seed = selection.trials or GOALS, 1 if selection.seed is None else selection.seed
+    driven, nearest, tipped = list[Driven](), np.inf, 0
     with tempfile.TemporaryDirectory() as name:
         model, (x, y, yaw) = BEGUN[world]
         rover = {"model": model, "system_id": 1, "start": {"x": x, "y": y, "yaw": yaw}, "job": {"explore": True}}
         path = Path(name) / f"{world}.yaml"
         path.write_text(yaml.safe_dump({"about": "Errands.", "world": world, "seed": 1, "vehicles": {VEHICLE: rover}}))
-        run = Errands(load_scenario(path), 1 if selection.seed is None else selection.seed)
-    driven = [run.drive(goal) for goal in run.draw(selection.trials or GOALS)]
-    run.close()
-    reached = np.array([(way, took) for success, way, took in driven if success]).reshape(-1, 2)
+        while len(driven) < goals:
+            run = Errands(load_scenario(path), seed + tipped)
+            for goal in run.draw(goals - len(driven)):
+                run.heard.touched = False
+                driven.append(Driven(*run.drive(goal), run.heard.touched))
+                if run.heard.tilt > TIPPED:
+                    tipped += 1
+                    break
+            nearest = min(nearest, run.closest())
+            run.close()
+    reached = np.array([(goal.way, goal.took) for goal in driven if goal.reached]).reshape(-1, 2)
     row = {
         "reached %": 100.0 * len(reached) / len(driven),
         "m": float(reached[:, 0].mean()) if len(reached) else np.nan,
         "s": float(reached[:, 1].mean()) if len(reached) else np.nan,
-        "closest m": run.closest(),
-        "touched": float(run.heard.touched),
+        "closest m": nearest,
+        "touched": float(sum(goal.touched for goal in driven)),
+        "tipped": float(tipped),
     }
     return {f"goals: {world}": row}
 
