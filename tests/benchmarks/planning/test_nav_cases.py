@@ -47,7 +47,7 @@ def test_a_cycle_is_told_by_its_parts_and_for_each_local_planner(monkeypatch):
     monkeypatch.setattr(cycle, "PLACES", 4)
     monkeypatch.setattr(cycle, "SAMPLES", 400)
     rows = nav.cases(None, Selection())["cycle"](None)
-    parts = {"cycle: costmap 100 x 100, 720 beams", "cycle: window", "cycle: mppi 400 x 56"}
+    parts = {"cycle: costmap 100 x 100, 720 beams", "cycle: window", "cycle: mppi 400 x 56", "cycle: mppi 400 x 56, 6 moving"}
     assert set(rows) == parts | {f"cycle: {name}" for name in LOCAL_PLANNERS}
     assert all(row["n"] == 3 and 0.0 < row["ms"] <= row["worst ms"] for row in rows.values())
 
