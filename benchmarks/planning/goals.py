@@ -30,7 +30,7 @@ from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.urdf.model import load_urdf
 from uvf.models.urdf.outline import plan_outline
-from uvf.models.world.geometry import FloorPlan, floor_plan, reachable_floor
+from uvf.models.world.geometry import FloorPlan, floor_plan, reachable_places
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.messages.convert import occupancy_cells, wxyz, yaw_of
@@ -117,7 +117,7 @@ class Errands:
         assert member.file.ground is not None
         plan, start = floor_plan(self._site.world, CELL), member.entry.start
         x, y = plan.centres()
-        inside = reachable_floor(plan, start.x, start.y, member.file.ground.radius + APART)
+        inside = reachable_places(plan, start.x, start.y, member.file.ground.radius + APART)
         floor = np.column_stack((x[inside], y[inside]))
         grid, cells = self.heard.grid, occupancy_cells(self.heard.grid)
         there = transform(inverse(Pose2(start.x, start.y, start.yaw)), floor) - (grid.pose.position.x, grid.pose.position.y)

@@ -145,14 +145,22 @@ def empty_plan(world: WorldFile, resolution: float) -> FloorPlan:
 def reachable_floor(plan: FloorPlan, x: float, y: float, radius: float) -> Mask:
     """Floor (rows, columns) that a round robot of ``radius`` [m] starting at (x, y) [m, world] can cover with its body.
 
-    Its centre may be where the nearest solid is no closer than the radius; the floor is what its disc sweeps.
-    Empty when the start is not free.
+    It is what its disc sweeps, its centre being at ``reachable_places``.
+    """
+    return _swept(plan, reachable_places(plan, x, y, radius), radius)
+
+
+def reachable_places(plan: FloorPlan, x: float, y: float, radius: float) -> Mask:
+    """Places (rows, columns) of the centre of a round robot of ``radius`` [m] starting at (x, y) [m, world].
+
+    It may be where the nearest solid is no closer than the radius. Empty when the start is not free.
     """
     labels = _where_it_fits(plan, radius)
     row, column = plan.cell(x, y)
     if not (0 <= row < plan.cells.shape[0] and 0 <= column < plan.cells.shape[1]) or labels[row, column] == 0:
         return np.zeros_like(plan.cells)
-    return _swept(plan, labels == labels[row, column], radius)
+    places: Mask = labels == labels[row, column]
+    return places
 
 
 def free_regions(plan: FloorPlan, radius: float) -> list[Mask]:
@@ -170,5 +178,7 @@ def _where_it_fits(plan: FloorPlan, radius: float) -> NDArray[np.int32]:
 
 
 def _swept(plan: FloorPlan, centres: Mask, radius: float) -> Mask:
+    if not centres.any():
+        return np.zeros_like(plan.cells)
     swept: Mask = ndimage.distance_transform_edt(~centres) * plan.resolution <= radius
     return swept & ~plan.cells
