@@ -4,13 +4,14 @@ In lockstep. Goals lie on the floor that the rover can reach and its map knows. 
 ``m``, ``s``: straight distance and time of those that were reached. ``closest m``: least true distance of its outline to anything;
 ``touched``: goals on the way to which its bumper says so. The truth draws the goals and judges, and nobody else hears it. A rover
 that a failsafe has put on hold, or disarmed, has missed its goal, and is told to go on before the next one, as an operator would do.
-One that has been knocked over (``tipped``) has missed its goal too; another one explores the world anew and takes the rest.
+One that people have knocked over (``tipped``), or that no longer knows where it is (``lost``, by more than 1 m), has missed its goal
+too; another one explores the world anew and takes the rest.
 """
 
 import tempfile
 from dataclasses import dataclass, field
 from functools import partial
-from math import acos
+from math import acos, hypot
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,7 +24,7 @@ from launch import catalogue
 from launch.commands.bench import Case, Figures
 from launch.commands.bench_selection import Selection
 from schemas import topics
-from schemas.messages import ArmRequest, Contact, GoalRequest, Grid, Mode, ModeRequest, NavState, NavStatus, Reply, Vector3
+from schemas.messages import ArmRequest, Contact, GoalRequest, Grid, Mode, ModeRequest, NavState, NavStatus, PoseInFrame, Reply, Vector3
 from schemas.topics import Request
 from uvf.maths.rotations import rotate
 from uvf.maths.se2 import Pose2, inverse, transform
@@ -53,7 +54,7 @@ GOALS = 50
 PATIENCE = 300.0  # s for a goal, across the plaza at 0.4 m/s too
 THERE = 0.3  # m
 SETTLED = 0.2  # s after a change of the mode
-TIPPED = 1.0  # rad from upright
+TIPPED, LOST = 1.0, 1.0  # rad from upright, m between where it is and where it has itself
 APART = 0.15  # m beyond the rover's radius that a goal lies from obstacles
 CELL = 0.05  # m
 WORLDS = tuple(f"goals:{world}" for world in BEGUN)
@@ -69,6 +70,8 @@ class Heard:
     true: list[tuple[float, float, float, float]] = field(default_factory=list)
     touched: bool = False
     tilt: float = 0.0  # rad from upright
+    estimate: tuple[float, float] = (np.nan, np.nan)
+    """Where it has itself, x, y [m, world]."""
 
     def listen(self, lockstep: Lockstep) -> None:
         """From now on."""
@@ -77,6 +80,7 @@ class Heard:
             (topics.MAP.at(VEHICLE), topics.MAP.qos, self._map),
             (topics.TRUTH.at(VEHICLE), topics.TRUTH.qos, self._truth),
             (topics.CONTACT.at(VEHICLE), topics.CONTACT.qos, self._contact),
+            (topics.POSE.at(VEHICLE), topics.POSE.qos, self._pose),
         ):
             lockstep.bus.subscribe(key, qos, hear)
 
@@ -90,6 +94,16 @@ class Heard:
         state = NavState.FromString(sample.payload)
         self.true.append((sample.stamp_ns / 1e9, state.position.x, state.position.y, yaw_of(state.orientation)))
         self.tilt = acos(min(max(float(rotate(wxyz(state.orientation), np.eye(3)[2])[2]), -1.0), 1.0))
+
+    def _pose(self, sample: Sample) -> None:
+        place = PoseInFrame.FromString(sample.payload).pose.position
+        self.estimate = place.x, place.y
+
+    @property
+    def is_lost(self) -> bool:
+        """Whether it is elsewhere than it has itself."""
+        _, x, y, _ = self.true[-1]
+        return hypot(x - self.estimate[0], y - self.estimate[1]) > LOST
 
     def _contact(self, sample: Sample) -> None:
         self.touched |= Contact.FromString(sample.payload).touching
@@ -193,19 +207,19 @@ class Driven(NamedTuple):
 def errands(world: str, selection: Selection, data: Path | None) -> Figures:
     """The row of a world."""
     goals, seed = selection.trials or GOALS, 1 if selection.seed is None else selection.seed
-    driven, nearest, tipped = list[Driven](), np.inf, 0
+    driven, nearest, tipped, lost = list[Driven](), np.inf, 0, 0
     with tempfile.TemporaryDirectory() as name:
         model, (x, y, yaw) = BEGUN[world]
         rover = {"model": model, "system_id": 1, "start": {"x": x, "y": y, "yaw": yaw}, "job": {"explore": True}}
         path = Path(name) / f"{world}.yaml"
         path.write_text(yaml.safe_dump({"about": "Errands.", "world": world, "seed": 1, "vehicles": {VEHICLE: rover}}))
         while len(driven) < goals:
-            run = Errands(load_scenario(path), seed + tipped)
+            run = Errands(load_scenario(path), seed + tipped + lost)
             for goal in run.draw(goals - len(driven)):
                 run.heard.touched = False
                 driven.append(Driven(*run.drive(goal), run.heard.touched))
-                if run.heard.tilt > TIPPED:
-                    tipped += 1
+                if run.heard.tilt > TIPPED or run.heard.is_lost:
+                    tipped, lost = (tipped + 1, lost) if run.heard.tilt > TIPPED else (tipped, lost + 1)
                     break
             nearest = min(nearest, run.closest())
             run.close()
@@ -217,6 +231,7 @@ def errands(world: str, selection: Selection, data: Path | None) -> Figures:
         "closest m": nearest,
         "touched": float(sum(goal.touched for goal in driven)),
         "tipped": float(tipped),
+        "lost": float(lost),
     }
     return {f"goals: {world}": row}
 
