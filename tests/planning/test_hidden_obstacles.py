@@ -106,6 +106,13 @@ def test_a_drop_too_far_to_tell_from_a_hidden_ramp_is_told_of_from_nearer():
     assert len(near) > 0
 
 
+@pytest.mark.parametrize("height", [0.0, -0.1])
+def test_a_camera_on_the_floor_sees_no_farther_than_others(height):
+    wall = np.column_stack((np.full(40, 5.0), np.linspace(-0.1, 0.1, 40), np.full(40, 0.2)))
+    assert not depth_sight((*EYE, height), wall, TOP, REACH).hits.any()
+    assert depth_sight((*EYE, height), wall - (3.0, 0.0, 0.0), TOP, REACH).hits.any()
+
+
 def test_of_nothing_a_camera_tells_nothing():
     sight = depth_sight((*EYE, HEIGHT), np.zeros((0, 3)), TOP, REACH)
     assert sight.starts.shape == sight.ends.shape == (0, 2)

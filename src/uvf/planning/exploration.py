@@ -55,9 +55,9 @@ class Explorer:
 
         others: where the rest of the team goes; a frontier that none of them goes to comes first (Burgard et al. 2005).
         """
-        mask = self._shunned_mask(t, costs)
-        found = frontiers(costs, ways.cost, mask, self.taste)
-        self.explored = self._estimate(costs, ways, sum(f.size for f in found))
+        found = frontiers(costs, ways.cost, self._shunned_mask(t, costs), self.taste)
+        left = frontiers(costs, ways.cost, self._shunned_mask(t, costs, again=True), self.taste) if self._shunned else found
+        self.explored = self._estimate(costs, ways, sum(f.size for f in left))
         places = [_place(costs, frontier) for frontier in found]
         if not places:
             self.goal = None
@@ -90,10 +90,11 @@ class Explorer:
             self._shunned.append(Shunned(self.goal, t + SHUN_TIME, 0))
         self.goal = None
 
-    def _shunned_mask(self, t: float, costs: Costmap) -> Mask:
+    def _shunned_mask(self, t: float, costs: Costmap, again: bool = False) -> Mask:
+        """Where frontiers do not count; again: only for those shunned more than once, for the others are yet to be explored."""
         mask = np.zeros(costs.values.shape, dtype=np.bool_)
         for place in self._shunned:
-            if place.until > t:
+            if place.until > t and (place.times > 0 or not again):
                 mask |= disc(costs, place.point, SHUN_RADIUS + self.taste.view)
         return mask
 

@@ -59,7 +59,7 @@ class Reading:
         As if its speeds had been off the same way all the time, as they are by a bias. What its pose's covariance has grown by would say
         less: an error that goes on as before makes it grow by as much as everything before has made it.
         """
-        if self.rate_sigmas is None:
-            return None
+        if self.rate_sigmas is None or before.rate_sigmas is None or self.t <= before.t:
+            return None  # the reading before may be of a session from another day
         speed, turn_rate = self.rate_sigmas
         return speed * (self.t - before.t), turn_rate * (self.t - before.t)

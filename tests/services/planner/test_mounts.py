@@ -9,13 +9,14 @@ import yaml
 from schemas import topics
 from services.autopilot.ground.build import hosts
 from services.planner.build import build as build_planner
+from services.planner.exploration_goals import SETTLING
 from services.sim_ground.build import build as build_simulator
 from services.slam.build import build as build_slam
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.messages.mapped_floor import MappedFloor
 from uvf.runtime.time.lockstep import Lockstep
 
-FIRST, LAST = 3.0, 15.0  # s
+FIRST, LAST = 3.0, SETTLING + 15.0  # s
 MOUNTS = {  # x, y [m], yaw, field of view [deg]
     "front corner": (0.11, 0.08, 0.0, 180),
     "rear corner": (-0.11, -0.08, 180.0, 180),

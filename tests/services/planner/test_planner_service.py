@@ -1,5 +1,7 @@
 """The planner step by step: goals, what it does without inputs, what it does when blocked."""
 
+from math import ceil
+
 import numpy as np
 import pytest
 
@@ -15,7 +17,9 @@ from schemas.messages import (
     Vector3,
     VehicleStatus,
 )
+from services.planner.exploration_goals import SETTLING
 from services.planner.params import PlannerParams
+from services.planner.planner_service import PlannerService
 from tests.runtime.stepping import recall, stale
 from tests.services.live_params import all_settable_are_read
 from tests.services.planner.planner_bench import CANCEL, START, Bench, asked, planner, preview, world
@@ -24,10 +28,12 @@ from uvf.planning import global_planner
 from uvf.planning.search.grid_search import GridSearch
 from uvf.runtime.messages.convert import occupancy_grid
 
+SETTLED = 4 + ceil(SETTLING * PlannerService.hz)  # steps after which who explores no longer stands for its gyroscope
+
 
 @pytest.mark.parametrize("explores", [False, True])
 def test_on_a_map_too_large_to_plan_on_the_vehicle_stands_and_says_why(explores):
-    bench = Bench(explores).step(4)
+    bench = Bench(explores).step(SETTLED)
     bench.grid = occupancy_grid(np.zeros((4001, 4000), dtype=np.int8), 0.05, 0.0, 0.0, "v/map", 1.0)
     bench.step(goal=[asked(2.0, 2.0)])
     reply = bench.said["goal"][0]
@@ -309,7 +315,7 @@ def test_a_lidar_ahead_of_the_vehicle_shows_enough_to_begin_with():
     cells = room(4.0, 3.0)
     bench.service = planner(True, 0.2)
     bench.grid = occupancy_grid(cells[:, 24:], 0.05, 1.2, 0.0, "v/map", 0.0)
-    assert bench.step(2).state == NavStatus.DRIVING
+    assert bench.step(SETTLED).state == NavStatus.DRIVING
 
 
 @pytest.mark.parametrize("name", ["dijkstra", "jump_points", "theta_star", "rrt_star", "rrt_connect", "prm", "visibility_graph", "voronoi"])

@@ -63,9 +63,11 @@ READING = Reading(0.0, np.zeros(541), BEAMS, Pose2(0.0, 0.0, 0.0))
 
 
 def test_a_motion_is_off_by_what_its_speeds_are_off_by_all_the_time():
-    now = replace(READING, t=0.5, rate_sigmas=(0.02, 0.004))
-    assert now.claimed_since(READING) == pytest.approx((0.01, 0.002))
-    assert READING.claimed_since(now) is None
+    before, now = (replace(READING, t=t, rate_sigmas=(0.02, 0.004)) for t in (0.0, 0.5))
+    assert now.claimed_since(before) == pytest.approx((0.01, 0.002))
+    assert before.claimed_since(now) is None
+    assert now.claimed_since(READING) is None
+    assert READING.claimed_since(before) is None
 
 
 @pytest.mark.parametrize("claimed", [(0.0, 0.0), (4e-3, 1e-3), (10.0, 10.0)])

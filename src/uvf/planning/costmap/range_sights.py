@@ -36,7 +36,8 @@ def depth_sight(eye: tuple[float, float, float], points: Floats, top: float, rea
     points = points[points[:, 2] < top]
     away = points[:, :2] - np.array(eye[:2])
     ranges, sectors = np.hypot(*away.T), np.floor(np.arctan2(away[:, 1], away[:, 0]) / BEARING).astype(np.int64)
-    passes = ranges * eye[2] / np.maximum(eye[2] - np.minimum(points[:, 2], 0.0), 1e-9)  # through the floor's plane, or where it ends
+    above, below = max(eye[2], 0.0), np.maximum(-points[:, 2], 0.0)
+    passes = ranges * np.where(below > 0.0, above / (above + below + 1e-9), 1.0)  # through the floor's plane, or where it ends
     order = np.lexsort((ranges, sectors))
     order = order[passes[order] <= reach]
     ranges, sectors, heights = ranges[order], sectors[order], points[order, 2]
