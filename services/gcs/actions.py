@@ -1,144 +1,199 @@
-"""What a browser can ask for: what changes its own view, and what goes to a vehicle or to all."""
+"""What a browser can ask for: what changes its own view, and what goes to a vehicle or to all.
+
+Each names the page that asks; words from a page are turned into these by their field types (``page.words``).
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated, Literal
 
+import msgspec
 import numpy as np
 
-from schemas.messages import GimbalCommand
+Name = Annotated[str, msgspec.Meta(max_length=64)]
+Share = Annotated[float, msgspec.Meta(ge=-1.0, le=1.0)]
+Metres = Annotated[float, msgspec.Meta(ge=-1e6, le=1e6)]
+Angle = Annotated[float, msgspec.Meta(ge=-7.0, le=7.0)]
 
 
 @dataclass(frozen=True)
-class Join:
-    """A browser has connected. page: here and below, which browser."""
+class Asked:
+    """Base of all actions. page: which browser asks."""
 
     page: int
 
 
 @dataclass(frozen=True)
-class Leave:
+class Join(Asked):
+    """A browser has connected."""
+
+
+@dataclass(frozen=True)
+class Leave(Asked):
     """A browser has disconnected."""
 
-    page: int
+
+@dataclass(frozen=True)
+class Hello(Asked):
+    """Who sits before the page, and which vehicle it showed before the connection was lost ("" at first)."""
+
+    operator: Annotated[str, msgspec.Meta(pattern="^[0-9a-f]{32}$")]
+    vehicle: Name
 
 
 @dataclass(frozen=True)
-class Select:
+class Beat(Asked):
+    """The page has shown this beat of the status bar: how old is what the operator sees."""
+
+    beat: Annotated[str, msgspec.Meta(max_length=20)]
+
+
+@dataclass(frozen=True)
+class Select(Asked):
     """Show this vehicle on the page."""
 
-    page: int
-    vehicle: str
+    vehicle: Name
 
 
 @dataclass(frozen=True)
-class ClickGround:
-    """A click that hit no vehicle: its ray (origin [m], direction), world frame. vehicle: here and below, the one the page shows."""
+class OpenTab(Asked):
+    """The page shows this tab."""
 
-    vehicle: str
+    tab: Name
+
+
+@dataclass(frozen=True)
+class Dress(Asked):
+    """The page is light or dark."""
+
+    theme: Literal["light", "dark"]
+
+
+@dataclass(frozen=True)
+class Shape(Asked):
+    """The page's 3-D view has this width over height [-]; touched: somebody has turned it by hand."""
+
+    aspect: Annotated[float, msgspec.Meta(ge=0.05, le=20.0)]
+    touched: bool
+
+
+@dataclass(frozen=True)
+class ChooseView(Asked):
+    """Look at the scene from a named view."""
+
+    view: Name
+
+
+@dataclass(frozen=True)
+class Layer(Asked):
+    """Show or hide a layer of the scene on a page."""
+
+    name: Name
+    on: bool
+
+
+@dataclass(frozen=True)
+class ShowCamera(Asked):
+    """Show a camera of the vehicle on the page: image, chase or gimbal."""
+
+    name: Name
+
+
+@dataclass(frozen=True)
+class Looking(Asked):
+    """The page reports that the camera picture is visible."""
+
+
+@dataclass(frozen=True)
+class ClickGround(Asked):
+    """A click that hit no vehicle: its ray (origin [m], direction), world frame."""
+
     origin: tuple[float, float, float]
     direction: tuple[float, float, float]
 
 
 @dataclass(frozen=True)
-class Arm:
-    """Arm or disarm the vehicle; carried out when it is asked for twice."""
+class Point(Asked):
+    """What is to be done at the place that was clicked: one of ``pointing.TOOLS``; "" closes the menu."""
 
-    page: int
-    vehicle: str
-    arm: bool
+    tool: Name
 
 
 @dataclass(frozen=True)
-class SetMode:
-    """Put the vehicle into a mode, by its name on the page."""
+class Command(Asked):
+    """A command of ``offers``, by its key, to a vehicle."""
 
-    vehicle: str
-    mode: str
-
-
-@dataclass(frozen=True)
-class StopAll:
-    """Engage STOP ALL, or release it."""
-
-    engaged: bool
+    vehicle: Name
+    key: Name
 
 
 @dataclass(frozen=True)
-class Layer:
-    """Show or hide a layer of the scene on a page."""
-
-    page: int
-    name: str
-    on: bool
+class StopAll(Asked):
+    """Engage STOP ALL."""
 
 
 @dataclass(frozen=True)
-class Cancel:
-    """Cancel the goal that the vehicle drives to."""
-
-    vehicle: str
+class ReleaseStop(Asked):
+    """Release STOP ALL."""
 
 
 @dataclass(frozen=True)
-class TakeWheel:
+class RequestControl(Asked):
+    """Ask for control of a vehicle that another operator controls."""
+
+    vehicle: Name
+
+
+@dataclass(frozen=True)
+class AnswerControl(Asked):
+    """Give control of a vehicle to the operator that asks for it, or keep it."""
+
+    vehicle: Name
+    give: bool
+
+
+@dataclass(frozen=True)
+class TakeWheel(Asked):
     """Drive the vehicle by hand from this page."""
 
-    page: int
-    vehicle: str
+    vehicle: Name
 
 
 @dataclass(frozen=True)
-class LeaveWheel:
+class LeaveWheel(Asked):
     """End driving by hand from this page."""
 
-    page: int
-
 
 @dataclass(frozen=True)
-class Steer:
+class Steer(Asked):
     """Directions that a page holds: parts (-1..1) of the linear and the angular scale."""
 
-    page: int
-    forward: float
-    left: float
+    forward: Share
+    left: Share
 
 
 @dataclass(frozen=True)
-class Rescale:
+class Rescale(Asked):
     """Change the speeds at which the page drives; key: one of teleop_drive.SCALINGS."""
 
-    page: int
-    key: str
+    key: Name
 
 
 @dataclass(frozen=True)
-class ShowCamera:
-    """Show a camera of the vehicle on the page: image, chase or gimbal."""
+class AimGimbal(Asked):
+    """Turn one axis of the gimbal to an angle [rad]."""
 
-    page: int
-    name: str
-
-
-@dataclass(frozen=True)
-class Looking:
-    """The page reports that the camera picture is visible."""
-
-    page: int
+    vehicle: Name
+    axis: Literal["pan", "tilt"]
+    angle: Angle
 
 
 @dataclass(frozen=True)
-class AimGimbal:
-    """Point the gimbal. vehicle: the one that the page was showing; pan and tilt [rad] and mode as in GimbalCommand."""
+class GimbalMode(Asked):
+    """What the gimbal's angles are relative to: one of ``wording.GIMBAL_MODES``."""
 
-    vehicle: str
-    pan: float
-    tilt: float
-    mode: GimbalCommand.Mode
-
-
-Shown = Join | Leave | Select | Layer | ShowCamera | Looking
-"""What changes only what is seen."""
-Action = Shown | ClickGround | Arm | SetMode | StopAll | Cancel | TakeWheel | LeaveWheel | Steer | Rescale | AimGimbal
+    vehicle: Name
+    mode: Name
 
 
 def ground_point(origin: Sequence[float], direction: Sequence[float]) -> tuple[float, float] | None:

@@ -30,15 +30,19 @@ from schemas.messages import (
     Odometry,
     PoseInFrame,
     PosesInFrame,
+    PreviewReply,
+    PreviewRequest,
     Processes,
     Reply,
     SimObjects,
     StopCommand,
+    VehicleCommandRequest,
     VehicleStatus,
 )
-from services.gcs.commands import SOURCE, Commander
-from services.gcs.page.page_frame import Composer
+from services.gcs.commands import Commander
+from services.gcs.offers import SOURCE
 from services.gcs.state.state import Model
+from services.gcs.view.composer import Composer
 from services.gcs.view.drawing import Page
 from uvf.models.scenario import Scenario
 from uvf.runtime.contract.declaration import Reads, Writes, answers, call, each_vehicle, every, optional, stop_all, topic
@@ -111,6 +115,8 @@ class GroundStation(Service):
         cancel: list[Answer[CancelRequest, Reply]] = answers(topics.CANCEL)
         arm: list[Answer[ArmRequest, Reply]] = answers(topics.ARM)
         mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
+        vehicle_command: list[Answer[VehicleCommandRequest, Reply]] = answers(topics.VEHICLE_COMMAND)
+        preview: list[Answer[PreviewRequest, PreviewReply]] = answers(topics.PREVIEW)
 
     class Outputs(Writes):
         """Commands and requests to the vehicles."""
@@ -122,19 +128,21 @@ class GroundStation(Service):
         cancel: list[CancelRequest] = call(topics.CANCEL)
         arm: list[ArmRequest] = call(topics.ARM)
         mode: list[ModeRequest] = call(topics.SET_MODE)
+        vehicle_command: list[VehicleCommandRequest] = call(topics.VEHICLE_COMMAND)
+        preview: list[PreviewRequest] = call(topics.PREVIEW)
 
     def __init__(self, site: Scenario, page: Page) -> None:
         self._page = page
         self._model = Model(site)
         self._commander = Commander(self._model)
-        self._composer = Composer(self._model, self._commander)
+        self._composer = Composer(self._model, self._commander.by_hand)
 
     def step(self, t: float, now: Inputs) -> Outputs:
         """One refresh of the page at ``t`` [s, wall]."""
         newest: Mapping[str, Mapping[str, Message]] = {name: getattr(now, name) for name in NEWEST}
         self._hear_system(t, now.clock, now.processes, now.health)
         self._hear_others(t, now.external, now.stop, (now.objects, now.aircraft), now.truth)
-        return self._act(t, newest, now.events, (*now.goal, *now.cancel, *now.arm, *now.mode))
+        return self._act(t, newest, now.events, [one for name in self.calls for one in getattr(now, name)])
 
     def _hear_system(self, t: float, clock: Clock | None, processes: Sequence[Processes], health: Sequence[Health]) -> None:
         self._model.hear_clock(t, clock)
@@ -162,7 +170,9 @@ class GroundStation(Service):
         out = self._commander.act(t, self._page.actions())
         self._commander.expire(t)
         self._page.show(self._composer.picture(t))
-        return self.Outputs(**{name: getattr(out, name) for name in (*self.outputs, *self.calls)})
+        outputs = self.Outputs()
+        outputs.update(out.said())
+        return outputs
 
     def close(self) -> None:
         """Stops the page's server."""

@@ -15,6 +15,7 @@ from urllib.parse import parse_qs, urlsplit
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
+from services.gcs.page.assets import Asset
 from uvf.runtime.bus.address import is_loopback
 
 COOKIE = "gcs"
@@ -26,6 +27,8 @@ class Guard:
 
     port: int
     token: str = ""
+    files: Mapping[str, Asset] = field(default_factory=dict)
+    """What is served besides viser's own, by path."""
     health: Callable[[], bytes] = field(default=lambda: b'{"status": "ok"}')
 
     def refuses(self, path: str, headers: Mapping[str, str]) -> str:
@@ -61,6 +64,9 @@ class Guard:
         if self.token and is_page and _query_token(path):
             cookie = f"{COOKIE}={self.token}; HttpOnly; SameSite=Strict; Path=/"
             return _response(http.HTTPStatus.FOUND, b"", {"Location": urlsplit(path).path or "/", "Set-Cookie": cookie})
+        asset = self.files.get(urlsplit(path).path) if is_page else None
+        if asset is not None:
+            return _response(http.HTTPStatus.OK, *asset.answer(headers.get("Accept-Encoding", "")))
         return None
 
     def wrap(self, process_request: Callable[..., Any] | None) -> Callable[[Any, Request], Any]:

@@ -7,7 +7,6 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from services.gcs.state.session import ROOTS
 from services.gcs.state.state import DisplayPose
 from services.gcs.view.drawing import FloorPicture, MeshNode, Node, Points, Polyline, TextNode
 
@@ -18,16 +17,16 @@ TURNED = 1e-3  # quaternion components
 
 
 class ViserScene:
-    """Keeps viser's scene in step with the picture. on_pick(vehicle, event): called on viser's event loop when a vehicle is clicked."""
+    """Keeps a scene, everybody's or one browser's, in step with the picture.
 
-    def __init__(self, server: viser.ViserServer, on_pick: Callable[[str, Any], None]) -> None:
+    on_pick(vehicle, event): called on viser's event loop when a vehicle is clicked.
+    """
+
+    def __init__(self, server: viser.ViserServer | viser.ClientHandle, on_pick: Callable[[str, Any], None]) -> None:
         self._server = server
         self._on_pick = on_pick
         self._shown: dict[str, tuple[Node, Any]] = {}
         self._frames: dict[str, tuple[Any, DisplayPose]] = {}
-        for root in [root for roots in ROOTS.values() for root in roots]:
-            # There before a browser comes, which hides the whole of it.
-            server.scene.add_frame(root, show_axes=False)
 
     def show(self, nodes: Mapping[str, Node], places: Mapping[str, DisplayPose]) -> None:
         """Shows these nodes and frames by name, changing only what differs."""

@@ -2,7 +2,6 @@
 
 import contextlib
 import io
-import json
 import logging
 from collections.abc import Callable
 from typing import Any
@@ -12,6 +11,7 @@ import websockets.asyncio.server as websocket_server
 from viser import _messages
 
 from services.gcs.page import viser_join
+from services.gcs.page.assets import assets
 from services.gcs.page.guard import Guard
 from services.gcs.page.viser_socket import LARGEST, Door
 from services.gcs.page.viser_wakeup import wake_from_the_loop
@@ -24,7 +24,7 @@ ERRORS_TOLD = 10
 def guarded_server(address: Address) -> viser.ViserServer:
     """viser's server behind the guard: websockets' ``serve``, which viser looks up when it starts, is wrapped meanwhile."""
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a browser's idle connection is not worth a traceback
-    guard = Guard(address.port, address.token, lambda: json.dumps({"status": "ok"}).encode())
+    guard = Guard(address.port, address.token, assets())
     door = Door()
     plain = websocket_server.serve
 

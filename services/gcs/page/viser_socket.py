@@ -22,7 +22,7 @@ SILENT_FOR = 10.0  # s; a page tells every 2 s how wide it is, one in a hidden t
 RATE, BURST = 100.0, 200.0  # messages/s of one browser: a page sends 30 at most
 FAULTS = 20  # more messages of no known form than sound ones, after which a connection is closed
 
-Word = Annotated[str, msgspec.Meta(max_length=256)]
+Word = Annotated[str, msgspec.Meta(max_length=2048)]
 Name = Annotated[str, msgspec.Meta(max_length=512)]
 Modifier = Annotated[str, msgspec.Meta(max_length=32)] | None
 Pixels = Annotated[int, msgspec.Meta(ge=0, le=100_000)]

@@ -1,8 +1,10 @@
-"""What one browser has chosen, of vehicle, camera and layers; another one's clicks change nothing of it."""
+"""What one browser has chosen, of vehicle, tab, view, camera and layers; another one's clicks change nothing of it."""
 
 from collections.abc import Set
 from dataclasses import dataclass, field
 from math import inf
+
+from services.gcs.state.pointing import Pointed
 
 ROOTS = {
     "Map": ("/map",),
@@ -17,6 +19,10 @@ ROOTS = {
 }
 """Layer -> the nodes that bear it; each bears nothing else."""
 SHOWN_AT_FIRST = frozenset(ROOTS) - {"Team maps", "True pose"}
+VIEWS = ("Scene", "All", "Top", "Follow")
+"""From where a scene can be looked at; the first one at first."""
+CONFIRM_WITHIN = 5.0  # s
+OLD_AFTER = 2.0  # s: a page that shows what is older must not do what cannot be undone
 
 
 def hidden_roots(layers: Set[str]) -> frozenset[str]:
@@ -32,11 +38,35 @@ class BrowserSession:
     """Which; never given to another one in the life of this ground station."""
     vehicle: str
     """The name of the one that it shows and commands."""
+    operator: str = ""
+    """Who sits before it: the token that the browser keeps; "" until it has said so."""
+    tab: str = ""
+    theme: str = "light"
+    aspect: float | None = None
+    """Width over height [-] of its 3-D view; None until it has told."""
+    touched: bool = False
+    """Whether somebody has turned the view by hand since it was chosen."""
+    view: str = VIEWS[0]
+    """The named view that it has chosen."""
+    views_chosen: int = 0
     layers: set[str] = field(default_factory=lambda: set(SHOWN_AT_FIRST))
     """What it shows of the scene."""
     camera: str = ""
     """The field of the vehicle whose picture is on show, where it has that camera."""
     looked_at: float = -inf
     """When it last said that somebody has the picture before his eyes [s, wall]."""
-    to_confirm: tuple[str, bool, float] | None = None
-    """(vehicle, arm or disarm, when [s, wall]) of the first of the two clicks that arming takes."""
+    seen: float = -inf
+    """Of when [s, wall] the newest status bar is that it has shown."""
+    to_confirm: tuple[str, str, float] | None = None
+    """(vehicle, command, when [s, wall]) of the first of the two clicks that some commands take."""
+    pointed: Pointed | None = None
+    """The place on the ground that was clicked."""
+
+    def confirms(self, vehicle: str, key: str, t: float) -> bool:
+        """Whether a second click at ``t`` [s, wall] would carry out a risky command."""
+        asked = self.to_confirm
+        return asked is not None and asked[:2] == (vehicle, key) and t - asked[2] <= CONFIRM_WITHIN
+
+    def behind(self, t: float) -> float:
+        """Age [s] of what it shows at ``t`` [s, wall]."""
+        return t - self.seen

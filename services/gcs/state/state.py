@@ -32,6 +32,7 @@ from schemas.messages import (
     VehicleStatus,
 )
 from schemas.topics import SYSTEM
+from services.gcs.state.control import ControlBook
 from services.gcs.state.event_log import EventHistory, EventLine
 from services.gcs.state.external_vehicles import FORGOTTEN_AFTER, ExternalVehicles
 from services.gcs.state.process_book import ProcessBook
@@ -54,6 +55,7 @@ Floats = NDArray[np.float64]
 
 STALE_AFTER = 1.5  # s, wall clock
 LOST_AFTER = 5.0  # s
+GONE_AFTER = 5.0  # s: a page that has shown nothing new for so long has nobody before it
 MOST_VEHICLES = 64
 LONGEST_TEXT = 500  # letters of an event or of what an external vehicle says of itself
 SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
@@ -179,6 +181,9 @@ class Model:
             self._add(name, member)
         self.sessions: dict[int, BrowserSession] = {}
         """Of each browser that is connected."""
+        self.wall = 0.0
+        """Time of this step [s, wall]."""
+        self.control = ControlBook()
         self.clock: Clock | None = None
         self.clock_at: float | None = None
         self.stop = StopStatus()
@@ -211,6 +216,11 @@ class Model:
         if session.vehicle not in self.vehicles:
             session.vehicle = next(iter(self.vehicles), "")
         return self.vehicles.get(session.vehicle)
+
+    @property
+    def present(self) -> Set[str]:
+        """The operators whose pages are connected and show what happens."""
+        return {s.operator for s in self.sessions.values() if s.operator and s.behind(self.wall) <= GONE_AFTER}
 
     @property
     def stopped(self) -> bool:
@@ -255,6 +265,7 @@ class Model:
 
     def hear_clock(self, t: float, clock: Clock | None) -> None:
         """Takes the clock message at ``t`` [s, wall]; a new epoch clears tracks and goals."""
+        self.wall = t
         if clock is None or clock is self.clock:
             return
         if self.clock is not None and clock.epoch != self.clock.epoch:

@@ -5,16 +5,11 @@ from typing import Any
 
 from google.protobuf.message import Message
 
-from schemas.messages import ArmRequest, CancelRequest, GoalRequest, Mode, ModeRequest
-from services.gcs.state.state import VehicleModel
+from schemas.messages import ArmRequest, CancelRequest, GimbalCommand, GoalRequest, Mode, ModeRequest, VehicleCommandRequest
 from uvf.runtime.messages.enum_names import enum_name
 
-MODES: Mapping[str, Mapping[str, Any]] = {
-    "ground": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Manual": Mode.MODE_MANUAL},
-    "fixed_wing": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Return": Mode.MODE_RETURN, "Manual": Mode.MODE_MANUAL},
-}
-FOLLOWER: Mapping[str, Any] = {"Hold": Mode.MODE_HOLD, "Follow leader": Mode.MODE_FOLLOW, **MODES["fixed_wing"]}
-"""Of an aircraft that the mission gives a leader."""
+GIMBAL_MODES: Mapping[str, Any] = {"Follow": GimbalCommand.FOLLOW, "Lock": GimbalCommand.LOCK, "Body": GimbalCommand.BODY}
+"""What a gimbal's angles are relative to, by the page's words."""
 
 
 def describe(request: Message) -> str:
@@ -28,14 +23,11 @@ def describe(request: Message) -> str:
             return "arm" if request.arm else "disarm"
         case CancelRequest():
             return "cancel the goal"
+        case VehicleCommandRequest() if request.HasField("home"):
+            return f"home at ({request.home.position.x:.1f}, {request.home.position.y:.1f}) m"
     return request.DESCRIPTOR.name
 
 
 def mode_name(mode: Any) -> str:
     """``MODE_RETURN`` -> ``Return``, an unknown one ``Mode 99``."""
     return enum_name(Mode, mode).capitalize()
-
-
-def modes_of(vehicle: VehicleModel) -> Mapping[str, Any]:
-    """The modes that a vehicle offers, by the labels of their buttons."""
-    return FOLLOWER if vehicle.leader else MODES[vehicle.member.file.kind]

@@ -3,30 +3,18 @@
 A picture goes to the page only while somebody has it before his eyes: each page says so once a second (``Looking``).
 """
 
-from dataclasses import dataclass
-from math import degrees
+from base64 import b64encode
+from math import degrees, radians
 
-from schemas.messages import GimbalCommand
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import STALE_AFTER, VehicleModel
+from services.gcs.state.wording import GIMBAL_MODES
+from services.gcs.view.controls import button, choice, does
 from services.gcs.view.markup import Html, html, joined
 
 SHOWN = {"gimbal": "gimbal", "chase": "chase", "image": "camera"}
 """Field of the model (the first one there is shown at first) -> what the camera is called in the vehicle's file."""
 SEEN_FOR = 10.0  # s that a page's word that it looks holds: one that draws without a graphics card may say it late
-MODES = {"Follow": GimbalCommand.FOLLOW, "Lock": GimbalCommand.LOCK, "Body": GimbalCommand.BODY}
-
-
-@dataclass(frozen=True)
-class GimbalPanel:
-    """The gimbal controls of a vehicle: range of the sliders [rad], and what was last requested here."""
-
-    vehicle: str
-    pan_max: float
-    tilts: tuple[float, float]
-    pan: float
-    tilt: float
-    mode: str
 
 
 def cameras_of(v: VehicleModel) -> list[str]:
@@ -46,37 +34,25 @@ def is_watched(session: BrowserSession, t: float) -> bool:
     return t - session.looked_at <= SEEN_FOR
 
 
-def picture(v: VehicleModel, session: BrowserSession, t: float) -> bytes | None:
-    """JPEG of the camera on show at ``t`` [s, wall]; None when there is none, or nobody watches."""
-    name = shown_camera(v, session)
-    if not name or not is_watched(session, t):
-        return None
-    image = getattr(v, name)
-    return None if image is None else image.data
-
-
-def gimbal_panel(v: VehicleModel, session: BrowserSession) -> GimbalPanel | None:
-    """The gimbal controls; None unless the gimbal's picture is on show."""
-    if shown_camera(v, session) != "gimbal" or (gimbal := v.member.file.sensors.gimbal) is None:
-        return None
-    mode = next(name for name, value in MODES.items() if value == v.aim.mode)
-    return GimbalPanel(v.name, gimbal.pan_max, (gimbal.tilt_min, gimbal.tilt_max), v.aim.pan, v.aim.tilt, mode)
-
-
 def panel(v: VehicleModel, session: BrowserSession, t: float) -> Html:
-    """The row of cameras, and below it the picture's age at ``t`` [s, wall]; empty when the vehicle has none."""
+    """The row of cameras, the picture and its age at ``t`` [s, wall], and the gimbal's sliders; empty when the vehicle has none."""
     shown = shown_camera(v, session)
     if not shown:
         return html("")
-    keys = joined(
-        html("<button type='button' data-gcs='camera:{}'{}>{}</button>", name, _pressed(name == shown), SHOWN[name])
-        for name in cameras_of(v)
-    )
-    return html("<div id='gcs-cameras'><div class='g-views' role='group' aria-label='Camera'>{}</div>{}</div>", keys, _age(v, shown, t))
+    keys = joined(button(SHOWN[name], "camera", name, pressed=name == shown) for name in cameras_of(v))
+    gimbal = _gimbal(v) if shown == "gimbal" else html("")
+    views = html("<div class='g-views' role='group' aria-label='Camera'>{}</div>", keys)
+    return html("<div id='gcs-cameras'><h2 class='g-h'>Camera {}</h2>{}{}</div>", _age(v, shown, t), views, gimbal)
 
 
-def _pressed(on: bool) -> Html:
-    return html(" aria-pressed='{}'", "true" if on else "false")
+def picture(v: VehicleModel, session: BrowserSession, t: float) -> Html:
+    """The newest picture of the camera on show at ``t`` [s, wall]; empty when there is none, or nobody watches."""
+    shown = shown_camera(v, session)
+    image = getattr(v, shown) if shown and is_watched(session, t) else None
+    if image is None:
+        return html("")
+    kind = "png" if image.data.startswith(b"\x89PNG") else "jpeg"
+    return html("<img alt='{} of {}' src='data:image/{};base64,{}'>", SHOWN[shown], v.name, kind, b64encode(image.data).decode())
 
 
 def _age(v: VehicleModel, shown: str, t: float) -> Html:
@@ -84,11 +60,27 @@ def _age(v: VehicleModel, shown: str, t: float) -> Html:
     if at is None:
         return html("<span class='g-idle'>no picture yet</span>")
     age, style = t - at, "g-idle" if t - at < STALE_AFTER else "g-warn"
-    where = _joints(v) if shown == "gimbal" else ""
-    return html("<span class='{}'>{}{:.1f} s old{}</span>", style, "⚠ " if style == "g-warn" else "", age, where)
+    return html("<span class='{}'>{}{:.1f} s old</span>", style, "⚠ " if style == "g-warn" else "", age)
 
 
-def _joints(v: VehicleModel) -> str:
+def _gimbal(v: VehicleModel) -> Html:
+    gimbal = v.member.file.sensors.gimbal
+    if gimbal is None:
+        return html("")
+    mode = next(name for name, value in GIMBAL_MODES.items() if value == v.aim.mode)
+    turns = [("pan", -gimbal.pan_max, gimbal.pan_max, v.aim.pan), ("tilt", gimbal.tilt_min, gimbal.tilt_max, v.aim.tilt)]
+    modes = choice("Gimbal follows", GIMBAL_MODES, mode, "gimbal-mode", v.name)
+    return html("{}{}{}", joined(_slider(v, *turn) for turn in turns), modes, _joints(v))
+
+
+def _slider(v: VehicleModel, axis: str, low: float, high: float, now: float) -> Html:
+    scale = html("min='{:.4f}' max='{:.4f}' step='{:.6f}' value='{:.4f}'", low, high, radians(1.0), now)
+    bar = html("<input type='range' {} {} aria-label='{} of {}'>", does("gimbal", v.name, axis), scale, axis, v.name)
+    return html("<label>{}{}<b>{:.0f}°</b></label>", axis, bar, degrees(now))
+
+
+def _joints(v: VehicleModel) -> Html:
     if v.gimbal_joints is None:
-        return ""
-    return " – joints " + ", ".join(f"{joint.name} {degrees(joint.position):.0f}°" for joint in v.gimbal_joints.joints)
+        return html("")
+    words = ", ".join(f"{joint.name} {degrees(joint.position):.0f}°" for joint in v.gimbal_joints.joints)
+    return html("<p class='g-why'>joints: {}</p>", words)

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from services.gcs.state.session import VIEWS
 from services.gcs.view.drawing import CameraView
 from services.gcs.view.scenery import extent
 from uvf.models.scenario import Scenario
@@ -69,8 +70,9 @@ def cameras(site: Scenario, aspect: float = ASPECT) -> dict[str, CameraView]:
     low, high = extent(site)
     everything = np.array([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
     near = fit(floor, direction(-1.85, 0.47), TILTED * aspect)
-    return {
-        "Scene": tilted_up(near, floor) if any(site.of_kind("fixed_wing")) else near,
-        "All": fit(everything, direction(-1.85, 0.5), aspect),
-        "Top": fit(floor, direction(-np.pi / 2, 1.56), aspect),
-    }
+    views = (
+        tilted_up(near, floor) if any(site.of_kind("fixed_wing")) else near,
+        fit(everything, direction(-1.85, 0.5), aspect),
+        fit(floor, direction(-np.pi / 2, 1.56), aspect),
+    )
+    return dict(zip(VIEWS, views, strict=False))

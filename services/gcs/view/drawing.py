@@ -1,15 +1,14 @@
 """The words in which the view speaks to a page: things in the scene, buttons, panels; plain data, no viser."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from services.gcs.actions import Action
+from services.gcs.actions import Asked
 from services.gcs.state.state import DisplayPose
-from services.gcs.view.camera_panel import GimbalPanel
 from services.gcs.view.markup import Html
 
 Floats = NDArray[np.float64]
@@ -69,19 +68,6 @@ Node = MeshNode | Polyline | Points | FloorPicture | TextNode
 
 
 @dataclass(frozen=True)
-class Button:
-    """A command button; ``lit`` when its state is the present one."""
-
-    key: str
-    label: str
-    action: Action
-    hint: str = ""
-    lit: bool = False
-    enabled: bool = True
-    colour: str = ""
-
-
-@dataclass(frozen=True)
 class CameraView:
     """A camera's position and the point it looks at [m, world]."""
 
@@ -91,15 +77,21 @@ class CameraView:
 
 @dataclass(frozen=True)
 class PagePanel:
-    """The panel of one browser: its vehicle, and the buttons for it."""
+    """What one browser alone is shown."""
 
-    vehicle: str = ""
     html: Mapping[str, Html] = field(default_factory=dict)
-    buttons: Sequence[Button] = ()
-    image: bytes | None = None
-    gimbal: GimbalPanel | None = None
+    """Markup by the slot of the page that it fills."""
+    nodes: Mapping[str, Node] = field(default_factory=dict)
+    """What only this browser sees in the scene."""
     hidden: frozenset[str] = frozenset()
     """Nodes of the scene that it does not show, with all that hangs below them."""
+    theme: str = "light"
+    camera: CameraView | None = None
+    """From where it looks; None: as its operator has turned the view."""
+    views_chosen: int = 0
+    """Rises with each view that is chosen: then the camera is set, wherever it was."""
+    t: float = 0.0
+    """Of when all this is [s, wall]."""
 
 
 @dataclass(frozen=True)
@@ -108,8 +100,6 @@ class Picture:
 
     nodes: Mapping[str, Node] = field(default_factory=dict)
     places: Mapping[str, DisplayPose] = field(default_factory=dict)
-    html: Mapping[str, Html] = field(default_factory=dict)
-    buttons: Sequence[Button] = ()
     panels: Mapping[int, PagePanel] = field(default_factory=dict)
     """By page, as in ``BrowserSession.page``."""
 
@@ -121,7 +111,7 @@ class Page(Protocol):
         """Shows a picture in all browsers."""
         ...
 
-    def actions(self) -> list[Action]:
+    def actions(self) -> list[Asked]:
         """Actions requested since the last call, oldest first."""
 
     def close(self) -> None:

@@ -21,20 +21,14 @@ from uvf.models.world.geometry import WALL, solids
 Floats = NDArray[np.float64]
 
 WALL_SHOWN = 0.9  # m: walls are cut at this height so that one looks into the rooms
-FLOOR: Colour = (52, 60, 74)
-YARD: Colour = (50, 62, 74)
-YARD_WIDTH = 6.0  # m about the floor
+FLOOR: Colour = (140, 150, 164)
 
 
 def scenery(world: WorldFile) -> dict[str, Node]:
     """The static scene nodes of a world, by name."""
     x_min, y_min, x_max, y_max = world.floor
     floor = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.06), (x_max - x_min, y_max - y_min, 0.1))
-    yard = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.09), (x_max - x_min + 2 * YARD_WIDTH, y_max - y_min + 2 * YARD_WIDTH, 0.1))
-    nodes: dict[str, Node] = {
-        "/world/floor": MeshNode(floor.vertices, floor.faces, FLOOR),
-        "/world/yard": MeshNode(yard.vertices, yard.faces, YARD),
-    }
+    nodes: dict[str, Node] = {"/world/floor": MeshNode(floor.vertices, floor.faces, FLOOR)}
     walls = [(wall.colour, part) for wall in world.walls for part in _segments(wall)]
     nodes.update(_merged("/world/walls", walls))
     things = [(s.colour, _placed(s)) for s in solids(world) if s.name != WALL and s.path is None]

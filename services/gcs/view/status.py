@@ -4,8 +4,11 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from schemas.messages import Clock, Event, NavStatus, Process, StopEngagement
-from services.gcs.commands import SOURCE
+from services.gcs.offers import SOURCE
+from services.gcs.state.control import called
+from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model, VehicleModel, link_of
+from services.gcs.view.controls import button
 from services.gcs.view.markup import Html, html, joined
 from uvf.runtime.state.stop_all import told
 
@@ -46,22 +49,53 @@ def system_link(model: Model, t: float) -> tuple[str, str]:
     return word, style
 
 
-def status_bar(model: Model, chosen: VehicleModel | None, t: float) -> Html:
-    """The bar over the scene at ``t`` [s, wall]: link, time, vehicles, alerts and notices."""
+def status_bar(model: Model, session: BrowserSession, chosen: VehicleModel | None, t: float) -> Html:
+    """The bar of a page at ``t`` [s, wall]: link, time, vehicles, the newest alarm, recording, who has control."""
     word, style = system_link(model, t)
     rate = f"× {model.clock.rate:.2f}" if model.clock is not None and model.clock.rate > 0 else ""
     live = sum(link_of(v.heard, t)[1] == "good" for v in model.vehicles.values())
     parts = [
         html("<b class='g-{}'>● {}</b>", style, word),
         html("<span>sim <b>{}</b> <i>{}</i></span>", clock_text(model.sim_time), rate),
-        html("<span>{} of {} vehicles</span>", live, len(model.vehicles)),
+        html("<span class='g-spare'>{} of {} vehicles</span>", live, len(model.vehicles)),
+        _recording(model),
+        _newest_alarm(model, t),
     ]
     if chosen is not None:
-        parts.append(
-            html("<span class='g-follow' hidden data-name='{}' data-distance='{}'></span>", chosen.name, 40 if chosen.flies else 3)
-        )
-    states = joined(html("<div class='g-alert g-a-{}'>{}</div>", style, text) for style, text in alerts(model, t))
-    return html("<div class='g-status'>{}</div>{}{}", joined(parts), states, _notices(model, t))
+        parts.append(_control(model, session, chosen))
+        shown = "<span class='g-shown' hidden data-name='{}' data-kind='{}' data-distance='{}'></span>"
+        parts.append(html(shown, chosen.name, chosen.member.file.kind, 40 if chosen.flies else 3))
+    return html("<div class='g-status'>{}</div>", joined(parts))
+
+
+def _recording(model: Model) -> Html:
+    recorder = model.processes.told.get("recorder")
+    if recorder is None:
+        return html("")
+    if recorder.state == Process.RUNNING:
+        return html("<span class='g-bad' title='everything on the bus is written to a log'>● REC</span>")
+    return html("<span class='g-warn'>⚠ not recorded</span>")
+
+
+def _newest_alarm(model: Model, t: float) -> Html:
+    found = alerts(model, t)
+    if found:
+        return html("<span class='g-alarm g-{}'>{}</span>", found[0].style, found[0].text)
+    return html("<span class='g-alarm g-good g-spare'>✓ no alarm</span>")
+
+
+def _control(model: Model, session: BrowserSession, chosen: VehicleModel) -> Html:
+    holder = model.control.holders.get(chosen.name, "")
+    if not holder or holder not in model.present:
+        return html("<span class='g-spare g-idle'>nobody controls {}</span>", chosen.name)
+    if holder == session.operator:
+        return html("<span class='g-spare g-good'>you control {}</span>", chosen.name)
+    return html("<span class='g-warn'>{} controls {}</span>", called(holder), chosen.name)
+
+
+def alert_lines(model: Model, t: float) -> Html:
+    """The states that want attention at ``t`` [s, wall], over the scene."""
+    return joined(html("<div class='g-alert g-a-{}'>{}</div>", style, text) for style, text in alerts(model, t))
 
 
 def alerts(model: Model, t: float) -> list[Alert]:
@@ -113,7 +147,8 @@ def _by_whom(model: Model) -> str:
     return "; ".join(words) + (f" and {len(stops) - STOPS_SHOWN} more" if len(stops) > STOPS_SHOWN else "")
 
 
-def _notices(model: Model, t: float) -> Html:
+def notices(model: Model, t: float) -> Html:
+    """The notices of late, over the scene."""
     rows = []
     for line, good, _ in model.log.notices(t):
         sign, style = ("✓", "good") if good else SEVERITY.get(line.severity, SEVERITY[Event.INFO])
@@ -121,17 +156,18 @@ def _notices(model: Model, t: float) -> Html:
         rows.append(
             html("<div class='g-note'><b class='g-{}'>{}</b> {}{} <i>{}</i></div>", style, sign, who, line.text, clock_text(line.t))
         )
-    return html("<div class='g-notices' aria-live='polite'>{}</div>", joined(rows)) if rows else html("")
+    return html("<div class='g-notices'>{}</div>", joined(rows)) if rows else html("")
 
 
-def stop_line(model: Model) -> Html:
-    """Under STOP ALL: whether it is engaged, since when and by whom, which vehicles obey it, how it ends."""
+def stop_panel(model: Model) -> Html:
+    """STOP ALL, its release, and whether it is engaged: since when and by whom, which vehicles obey it."""
+    stop = button("■ STOP ALL", "stop", style="g-stop", hint="Ground vehicles stop, aircraft circle; at once")
     if not model.stopped:
-        return html("<div class='g-stopline'>STOP ALL is not engaged</div>")
+        return stop
+    release = button("Release STOP", "release", style="g-btn g-wide", hint="Vehicles obey commands again")
     heeding = ", ".join(v.name for v in model.vehicles.values() if v.stopped)
     missing = ", ".join(v.name for v in model.vehicles.values() if not v.stopped)
     lines = [html("<b>■ ENGAGED</b> {}", _by_whom(model))]
     lines += [html("<span class='g-good'>✓ heeded by {}</span>", heeding)] if heeding else []
     lines += [html("<span class='g-bad'>✖ not confirmed by {}</span>", missing)] if missing else []
-    lines += [html("Holds until <b>Release STOP</b>")]
-    return html("<div class='g-stopline g-engaged' role='status'>{}</div>", joined(lines, html("<br>")))
+    return html("{}<div class='g-stopline g-engaged' role='status'>{}</div>{}", stop, joined(lines, html("<br>")), release)

@@ -4,6 +4,7 @@ from schemas.messages import Mode
 from services.gcs.by_hand import ManualDriving
 from services.gcs.state.state import VehicleModel
 from services.gcs.state.wording import mode_name
+from services.gcs.view.controls import button
 from services.gcs.view.markup import Html, html, joined
 from uvf.control.teleop_drive import DIRECTIONS
 
@@ -28,11 +29,11 @@ def wheel(v: VehicleModel, by_hand: ManualDriving, page: int) -> Html:
         return html("")
     holder = by_hand.holder(v.name)
     if holder == page:
-        stop = html("<button type='button' data-gcs='wheel:off'>Stop driving by hand</button>")
+        stop = button("Stop driving by hand", "leave-wheel", style="g-btn g-wide")
         return html("<div id='gcs-wheel' data-driver='mine'><div class='g-mine'>{}{}</div></div>", stop, _pad(v, by_hand))
-    driver, who, take = ("nobody", "", "Drive by hand") if holder is None else ("theirs", "driven from another page", "Take the wheel")
-    button = html("<button type='button' data-gcs='wheel:on'>{}</button>", take)
-    return html("<div id='gcs-wheel' data-driver='{}'><div class='g-theirs'><div>{}</div>{}</div></div>", driver, who, button)
+    driver, who = ("nobody", "") if holder is None else ("theirs", "driven from another page")
+    take = button("Drive by hand", "take-wheel", v.name, style="g-btn g-wide", hint="Mode Manual, then keys, buttons or a gamepad")
+    return html("<div id='gcs-wheel' data-driver='{}'><div class='g-theirs'><div>{}</div>{}</div></div>", driver, who, take)
 
 
 def _pad(v: VehicleModel, by_hand: ManualDriving) -> Html:
@@ -53,7 +54,7 @@ def _key(key: str) -> Html:
     forward, left = DIRECTIONS[key]
     keys = f"{key} {ARROWS.get(key, '')}".strip()
     return html(
-        "<button type='button' data-keys='{}' data-steer='{:g} {:g}' aria-label='{}'>{}</button>",
+        "<button type='button' class='g-btn' data-keys='{}' data-steer='{:g} {:g}' aria-label='{}'>{}</button>",
         keys,
         forward,
         left,
@@ -65,15 +66,7 @@ def _key(key: str) -> Html:
 def _scale(keys: str, value: str, what: str) -> Html:
     """keys: the one that raises it and the one that lowers it."""
     up, down = (
-        html(
-            "<button type='button' data-keys='{}' data-gcs='scale:{}' aria-label='{} {}' title='key {}'>{}</button>",
-            key,
-            key,
-            what,
-            word,
-            key,
-            sign,
-        )
+        button(sign, "scale", key, more=html("data-keys='{}' aria-label='{} {}'", key, what, word), hint=f"key {key}")
         for key, word, sign in zip(keys, ("up", "down"), "+−", strict=True)
     )
     return html("<div class='g-scale'><span>{}</span>{}<b>{}</b>{}</div>", what, down, value, up)

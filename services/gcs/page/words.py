@@ -1,0 +1,53 @@
+"""What the page's own script says: ``[number, verb, argument, ...]`` as JSON, checked by the field types of the action that it asks for."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+
+import msgspec
+
+from services.gcs import actions
+
+WORDS: Mapping[str, type[actions.Asked]] = {
+    "hello": actions.Hello,
+    "beat": actions.Beat,
+    "select": actions.Select,
+    "tab": actions.OpenTab,
+    "theme": actions.Dress,
+    "shape": actions.Shape,
+    "view": actions.ChooseView,
+    "layer": actions.Layer,
+    "camera": actions.ShowCamera,
+    "looks": actions.Looking,
+    "point": actions.Point,
+    "command": actions.Command,
+    "stop": actions.StopAll,
+    "release": actions.ReleaseStop,
+    "request-control": actions.RequestControl,
+    "answer-control": actions.AnswerControl,
+    "take-wheel": actions.TakeWheel,
+    "leave-wheel": actions.LeaveWheel,
+    "steer": actions.Steer,
+    "scale": actions.Rescale,
+    "gimbal": actions.AimGimbal,
+    "gimbal-mode": actions.GimbalMode,
+}
+
+
+def action_in(word: str, page: int) -> actions.Asked | None:
+    """The action that a word of this page's script asks for; None for one that is none. Which page speaks is not the word's to say."""
+    try:
+        said = msgspec.json.decode(word)
+    except (msgspec.DecodeError, RecursionError):
+        return None
+    match said:
+        case [int(), str(verb), *arguments] if verb in WORDS:
+            kind = WORDS[verb]
+        case _:
+            return None
+    names = [field.name for field in fields(kind)][1:]
+    if len(arguments) != len(names):
+        return None
+    try:
+        return msgspec.convert({"page": page, **dict(zip(names, arguments, strict=True))}, kind)
+    except msgspec.ValidationError:
+        return None

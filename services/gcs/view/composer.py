@@ -1,0 +1,152 @@
+"""Puts the picture of one step together: scene at the page's full rate, words at a fifth to a half of it; for each browser its own."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from schemas.messages import PreviewReply
+from services.gcs.by_hand import ManualDriving
+from services.gcs.state.pointing import Pointed
+from services.gcs.state.session import ROOTS, VIEWS, BrowserSession, hidden_roots
+from services.gcs.state.state import Model, VehicleModel
+from services.gcs.view import camera_panel, command_panel, facts, fleet, menus, records, status, teleoperation
+from services.gcs.view.cameras import ASPECT, cameras
+from services.gcs.view.controls import check_box, choice
+from services.gcs.view.drawing import CameraView, Node, PagePanel, Picture, Polyline
+from services.gcs.view.markup import Html, html, joined, trusted
+from services.gcs.view.overview import Overview
+from services.gcs.view.view import UP, SceneView
+
+HELP = Path(__file__).with_name("help.html")
+PREVIEWED = (150, 160, 175)
+FAST = ("stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
+EVERY = 2
+"""Steps between two drawings of these, which tell at once; of the rest one is drawn with each step."""
+SLOW = ("fleet", "cameras", "facts", "overview", "log", "processes", "notices", "layers", "views", "hint", "help")
+OF_TAB: Mapping[str, tuple[str, ...]] = {
+    "fly": ("instrument", "picture", "cameras", "facts"),
+    "drive": ("instrument", "picture", "wheel", "cameras", "facts"),
+    "graph": ("processes",),
+    "log": ("log",),
+    "help": ("help",),
+}
+"""What is drawn of a tab while it is open."""
+IN_TABS = frozenset(name for names in OF_TAB.values() for name in names)
+
+Draw = Callable[[], Html]
+
+
+class Composer:
+    """Composes what the page shows from the state of the ground station."""
+
+    def __init__(self, model: Model, by_hand: ManualDriving) -> None:
+        self._model = model
+        self._by_hand = by_hand
+        self._view = SceneView(model)
+        self._overview = Overview(model)
+        self._own: dict[int, tuple[tuple[str, str], dict[str, Html]]] = {}
+        """Page -> the (vehicle, tab) that it showed, and what it showed of it."""
+        self._drawn: dict[tuple[str, str], Html] = {}
+        """What has been drawn in this step: (what, of which vehicle); browsers that show the same share it."""
+        self._previews: dict[int, tuple[object, dict[str, Node]]] = {}
+        self._step = 0
+
+    def picture(self, t: float) -> Picture:
+        """The picture to show at ``t`` [s, wall]."""
+        self._drawn.clear()
+        sessions = self._model.sessions
+        self._own = {page: own for page, own in self._own.items() if page in sessions}
+        self._previews = {page: made for page, made in self._previews.items() if page in sessions}
+        shown = {page: self._panel(session, t) for page, session in sessions.items()}
+        self._step += 1
+        return Picture(self._view.nodes(t), self._view.places(), shown)
+
+    def _due(self, draws: Mapping[str, Draw], everything: bool) -> dict[str, Html]:
+        turn = SLOW[self._step % len(SLOW)]
+        due = {name for name in draws if everything or name == turn or (name in FAST and self._step % EVERY == 0)}
+        return {name: draws[name]() for name in draws if name in due}
+
+    def _panel(self, session: BrowserSession, t: float) -> PagePanel:
+        """Drawn as a whole when another vehicle or tab comes on show: never the words about one under the name of another."""
+        chosen = self._model.chosen_by(session)
+        on_show = (session.vehicle, session.tab)
+        before, words = self._own.get(session.page, (("", ""), {}))
+        new = not words or before != on_show
+        draws = self._words(session, chosen, t)
+        words = {name: content for name, content in words.items() if name in draws}
+        words |= self._due(draws, new)
+        self._own[session.page] = (on_show, words)
+        camera, nodes = self._camera(session), self._preview(session)
+        return PagePanel(words, nodes, hidden_roots(session.layers), session.theme, camera, session.views_chosen, t)
+
+    def _words(self, session: BrowserSession, v: VehicleModel | None, t: float) -> dict[str, Draw]:
+        model = self._model
+        always: dict[str, Draw] = {
+            "stop": self._once("stop", None, lambda: status.stop_panel(model)),
+            "bar": lambda: status.status_bar(model, session, v, t),
+            "alerts": self._once("alerts", None, lambda: status.alert_lines(model, t)),
+            "notices": self._once("notices", None, lambda: status.notices(model, t)),
+            "overview": self._once("overview", v, lambda: self._overview.svg(v)),
+            "views": lambda: _views(session),
+            "layers": lambda: _layers(session),
+        }
+        in_tabs = {
+            "processes": self._once("processes", None, lambda: records.processes(model, t)),
+            "log": self._once("log", None, lambda: records.event_log(model.log)),
+            "help": lambda: trusted(HELP.read_text(encoding="utf-8")),
+        }
+        if v is not None:
+            always |= {
+                "fleet": self._once("fleet", v, lambda: fleet.fleet(model, v, t)),
+                "commands": lambda: command_panel.command_panel(model, v, session, t),
+                "menu": lambda: menus.menu(model, session),
+                "hint": self._once("hint", v, lambda: menus.hint(model, v, session)),
+            }
+            in_tabs |= {
+                "instrument": self._once("instrument", v, lambda: facts.instrument(v)),
+                "wheel": lambda: teleoperation.wheel(v, self._by_hand, session.page),
+                "picture": lambda: camera_panel.picture(v, session, t),
+                "cameras": lambda: camera_panel.panel(v, session, t),
+                "facts": self._once("facts", v, lambda: facts.facts(v, t)),
+            }
+        return always | {name: in_tabs[name] for name in OF_TAB.get(session.tab, ()) if name in in_tabs}
+
+    def _once(self, what: str, v: VehicleModel | None, draw: Draw) -> Draw:
+        key = (what, v.name if v is not None else "")
+
+        def drawn() -> Html:
+            if key not in self._drawn:
+                self._drawn[key] = draw()
+            return self._drawn[key]
+
+        return drawn
+
+    def _camera(self, session: BrowserSession) -> CameraView | None:
+        """None while somebody has turned the view, or follows a vehicle, which the page does itself."""
+        views = cameras(self._model.site, session.aspect or ASPECT)
+        return None if session.touched else views.get(session.view)
+
+    def _preview(self, session: BrowserSession) -> dict[str, Node]:
+        """The way that the planner would take to the place that this page has clicked."""
+        pointed = session.pointed
+        of: Pointed | PreviewReply | None = pointed.preview if pointed is not None else None
+        if pointed is not None and pointed.to is not None:
+            of = pointed
+            points = np.array(((pointed.x, pointed.y, 3 * UP), (*pointed.to, 3 * UP)))
+        elif isinstance(of, PreviewReply) and len(of.poses) > 1:
+            points = np.array([(pose.position.x, pose.position.y, 3 * UP) for pose in of.poses])
+        else:
+            return {}
+        before = self._previews.get(session.page)
+        if before is None or before[0] is not of:
+            self._previews[session.page] = (of, {"/own/way": Polyline(points, PREVIEWED, 3.0)})
+        return self._previews[session.page][1]
+
+
+def _views(session: BrowserSession) -> Html:
+    return html("<div data-views='{}'>{}</div>", session.views_chosen, choice("View", VIEWS, session.view, "view"))
+
+
+def _layers(session: BrowserSession) -> Html:
+    return html("<div class='g-checks'>{}</div>", joined(check_box(name, name in session.layers, "layer", name) for name in ROOTS))
