@@ -13,7 +13,7 @@ import numpy as np
 Name = Annotated[str, msgspec.Meta(max_length=64)]
 Share = Annotated[float, msgspec.Meta(ge=-1.0, le=1.0)]
 Metres = Annotated[float, msgspec.Meta(ge=-1e6, le=1e6)]
-Angle = Annotated[float, msgspec.Meta(ge=-7.0, le=7.0)]
+Degrees = Annotated[float, msgspec.Meta(ge=-360.0, le=360.0)]
 
 
 @dataclass(frozen=True)
@@ -181,11 +181,11 @@ class Rescale(Asked):
 
 @dataclass(frozen=True)
 class AimGimbal(Asked):
-    """Turn one axis of the gimbal to an angle [rad]."""
+    """Turn one axis of the gimbal to an angle, in degrees as the slider has it."""
 
     vehicle: Name
     axis: Literal["pan", "tilt"]
-    angle: Angle
+    degrees: Degrees
 
 
 @dataclass(frozen=True)

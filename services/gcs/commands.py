@@ -44,7 +44,8 @@ from services.gcs.orders import OrderBook
 from services.gcs.state.control import called
 from services.gcs.state.pointing import TOOLS, Pointed
 from services.gcs.state.session import OLD_AFTER, BrowserSession
-from services.gcs.state.state import Model, VehicleModel
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.state.wording import GIMBAL_MODES, describe
 from uvf.control.teleop_drive import SCALINGS, TeleopCommand
 from uvf.runtime.contract.service import Answer
@@ -183,9 +184,9 @@ class Commander:
         aim.timestamp.CopyFrom(stamp(self._model.sim_time))
         match asked:
             case AimGimbal(axis="pan"):
-                aim.pan = float(np.clip(asked.angle, -gimbal.pan_max, gimbal.pan_max))
+                aim.pan = float(np.clip(np.radians(asked.degrees), -gimbal.pan_max, gimbal.pan_max))
             case AimGimbal():
-                aim.tilt = float(np.clip(asked.angle, gimbal.tilt_min, gimbal.tilt_max))
+                aim.tilt = float(np.clip(np.radians(asked.degrees), gimbal.tilt_min, gimbal.tilt_max))
             case GimbalMode(_, _, mode) if mode in GIMBAL_MODES:
                 aim.mode = GIMBAL_MODES[mode]
         vehicle.aim = out.gimbal[vehicle.name] = aim

@@ -7,7 +7,8 @@ from typing import Any
 from google.protobuf.message import Message
 
 from schemas.messages import ArmRequest, CancelRequest, Mode, ModeRequest, NavStatus
-from services.gcs.state.state import Model, VehicleModel
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import VehicleModel
 
 SOURCE = "gcs"
 STOPPED = "STOP ALL is engaged: release it first"

@@ -5,7 +5,8 @@ from typing import Any
 from google.protobuf.message import Message
 
 from schemas.messages import Event
-from services.gcs.state.state import LOST_AFTER, Model, Order, VehicleModel
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import LOST_AFTER, Order, VehicleModel
 from services.gcs.state.wording import describe
 from uvf.runtime.contract.service import Answer
 

@@ -2,7 +2,6 @@
 
 import contextlib
 import threading
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -39,7 +38,7 @@ class LiveStation:
     def __init__(self):
         site, self.port = with_eyes(demo_site()), free_port()
         self.script = Script()
-        self.page = ViserPage(Address(port=self.port), partial(cameras, site))
+        self.page = ViserPage(Address(port=self.port), next(iter(cameras(site).values())))
         self.service = GroundStation(site, self.page)
         self.shell = ServiceRunner(ServiceInstance(GroundStation, lambda: self.service), self.script.bus)
         self.moving = self.living = True
@@ -77,7 +76,7 @@ def browser():
 @contextlib.contextmanager
 def opened(browser, port, node, size=(1200, 700)):
     """The page once its bar is there and ``node`` stands in its scene; an error in its script fails the tests that use it."""
-    page = browser.new_page(viewport={"width": size[0], "height": size[1]})
+    page = browser.new_page(viewport={"width": size[0], "height": size[1]}, color_scheme="dark")
     errors = []
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.goto(f"http://127.0.0.1:{port}/")

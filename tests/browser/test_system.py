@@ -52,6 +52,10 @@ def test_the_tracks_of_both_vehicles_grow(page):
 def is_sent(page, system):
     """Whether a click on the goal's place is heeded."""
     page.mouse.click(*on_screen(page, (*GOAL, 0.0)))
+    go = page.get_by_role("button", name="Go here: burger")
+    if not until(page, go.is_visible, 5.0):
+        return False
+    go.click()
     return until(page, lambda: system.client.read("burger", topics.NAV_STATUS).job == "goal", 3.0)
 
 
@@ -82,7 +86,7 @@ def is_under_way(page, system):
 
 def drive_forward(page, system):
     """Takes the wheel and holds the key until the rover is under way."""
-    page.locator("#gcs-wheel [data-gcs='wheel:on']").dispatch_event("pointerdown")
+    page.get_by_role("button", name="Drive by hand").click()
     page.locator("#gcs-wheel .g-keys").wait_for(state="visible", timeout=20_000)
     assert until(page, lambda: system.client.read("burger", topics.STATUS).mode == Mode.MODE_MANUAL)
     to_the_hall(system)

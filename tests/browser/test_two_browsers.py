@@ -33,7 +33,7 @@ def other(staging):
 
 
 def choose(page, vehicle):
-    page.get_by_role("button", name=f"Select {vehicle}").dispatch_event("pointerdown")
+    page.get_by_role("button", name=f"Select {vehicle}").click()
     page.locator("#gcs-drive" if vehicle == UGV else "#gcs-pfd").wait_for(timeout=40_000)
 
 

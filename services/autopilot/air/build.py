@@ -6,7 +6,6 @@ import numpy as np
 
 from schemas.messages import MissionItem
 from services.autopilot.air.config import AutopilotConfig
-from services.autopilot.air.inputs import intake
 from services.autopilot.air.modes.airspeed import reserved
 from services.autopilot.air.modes.follower import FormationLink
 from services.autopilot.air.service import AutopilotAir, AutopilotWingman
@@ -30,6 +29,7 @@ from uvf.models.world.terrain import relief
 from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.fences import fence_message, fencing
+from uvf.runtime.messages.plan_items import plan_items
 
 NEAREST = 1.0  # s behind a leader: what lies ahead of the follower has to be known
 
@@ -103,13 +103,13 @@ def _fence_fault(config: AutopilotConfig, here: Place, params: AirParams) -> str
     """Why this aircraft cannot keep its fence; empty if it can."""
     fence = fencing(config.fence)
     fault = fence_fit(fence, here, config.starts_in_air, params)
-    return fault or mission_fault(intake.items(config.items), fence, params)
+    return fault or mission_fault(plan_items(config.items), fence, params)
 
 
 def _fault(items: list[MissionItem], params: AirParams) -> str:
     """Why these items cannot be flown; empty if they can."""
     try:
-        return flyable.fault(intake.items(items), params)
+        return flyable.fault(plan_items(items), params)
     except ValueError as error:
         return str(error)
 

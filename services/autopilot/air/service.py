@@ -44,6 +44,7 @@ from uvf.models.vehicle.flight_params import FIXED, AirParams
 from uvf.runtime.contract.declaration import each_vehicle
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.plan_items import place_of, plan_items
 from uvf.runtime.state.stop_all import StopStatus
 
 
@@ -66,7 +67,7 @@ class AutopilotAir(Service):
         self._reboots = False
         self._told_params = ToldParams()
         self._armed = config.starts_in_air or config.starts_armed
-        self._mode_manager = ModeManager(intake.items(config.items), config.ground, config.strips, config.servos)
+        self._mode_manager = ModeManager(plan_items(config.items), config.ground, config.strips, config.servos)
         self._mode_manager.leads = LeaderSpeedFilter() if config.leads else None
         self._over_ground = GroundProximity(config.altimeter)
         self._within = CachedFenceCheck()
@@ -191,7 +192,7 @@ class AutopilotAir(Service):
             self._land = LandDetector(not left.status.landed)
             self._stop = StopStatus(tuple(left.status.stops))
             self._mode_manager.stopped = self._stop.who
-            self._mode_manager.take_up(intake.MODES[left.status.mode], intake.place(left.status.home), intake.stand(left.progress))
+            self._mode_manager.take_up(intake.MODES[left.status.mode], place_of(left.status.home), intake.stand(left.progress))
         if left.nav_state is not None:
             self._sensing.begin_from(left.nav_state)
 
@@ -263,7 +264,7 @@ class AutopilotAir(Service):
         return _reply(refusal)
 
     def _go_to(self, request: GoalRequest) -> Reply:
-        place, how = intake.place(request.position), LoiterOptions(request.radius, request.speed)
+        place, how = place_of(request.position), LoiterOptions(request.radius, request.speed)
         refusal = self._outside(place, how.radius) or self._mode_manager.go_to(place, request.source, self.params, how)
         if not refusal:
             self._safety.watch.overrule()

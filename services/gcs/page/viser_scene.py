@@ -7,7 +7,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from services.gcs.state.state import DisplayPose
+from services.gcs.state.vehicle_model import DisplayPose
 from services.gcs.view.drawing import FloorPicture, MeshNode, Node, Points, Polyline, TextNode
 
 Floats = NDArray[np.float64]

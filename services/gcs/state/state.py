@@ -1,8 +1,6 @@
 """What the ground station knows: the newest message of each kind, when it came, and what follows from them."""
 
 from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 from google.protobuf.message import Message
@@ -10,26 +8,12 @@ from numpy.typing import NDArray
 
 from schemas.messages import (
     Clock,
-    CompressedImage,
     Event,
     ExternalVehicle,
-    Fence,
-    FrameTransform,
-    GimbalCommand,
-    Grid,
-    JointStates,
-    LaserScan,
-    Mission,
-    MissionProgress,
     NavState,
-    NavStatus,
-    Odometry,
-    PoseInFrame,
-    PosesInFrame,
     SimObject,
     SimObjects,
     StopEngagement,
-    VehicleStatus,
 )
 from schemas.topics import SYSTEM
 from services.gcs.state.control import ControlBook
@@ -38,137 +22,25 @@ from services.gcs.state.external_vehicles import FORGOTTEN_AFTER, ExternalVehicl
 from services.gcs.state.process_book import ProcessBook
 from services.gcs.state.refusals import PageRefusals
 from services.gcs.state.session import SHOWN_AT_FIRST, BrowserSession
-from services.gcs.state.tracks import VehicleTrack
-from uvf.maths.rotations import matrix
-from uvf.maths.se3 import apply
+from services.gcs.state.vehicle_model import SIGNS_OF_LIFE, VehicleModel, scan_in_world, track_of
 from uvf.models.mission.file import StartPose, Vehicle
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.messages.convert import array, scan_points, seconds, wxyz
+from uvf.runtime.messages.convert import seconds
 from uvf.runtime.messages.mapped_floor import MappedFloor
 from uvf.runtime.messages.spawned import SPAWNED_MOST, name_fault, object_fault
 from uvf.runtime.state.stop_all import StopStatus, name_of, told
-from uvf.sensors.fitted import base_from_sensor
 
 Floats = NDArray[np.float64]
 
-STALE_AFTER = 1.5  # s, wall clock
-LOST_AFTER = 5.0  # s
 GONE_AFTER = 5.0  # s: a page that has shown nothing new for so long has nobody before it
 MOST_VEHICLES = 64
 LONGEST_TEXT = 500  # letters of an event or of what an external vehicle says of itself
-SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
 SHOWN_BY_THE_CLOCK = ("conductor",)
 """Sources whose warnings tell of a state that the page reads from the clock: they stand in the log, not as notices."""
 COLOURS = ("#4ea1ff", "#f2913d", "#3fbf7f", "#b98cf5", "#e8c547", "#5fd4d6")
 """Vehicles' own colours, told apart by colour-blind people too; red and magenta keep their meanings."""
-
-
-class DisplayPose(NamedTuple):
-    """A pose in the world frame: position (3,) [m], quaternion (4,) wxyz."""
-
-    position: Floats
-    wxyz: Floats
-
-
-@dataclass
-class Order:
-    """The last request made to a vehicle, and its outcome."""
-
-    text: str
-    at: float  # s, wall
-    state: str = "sent"  # sent | accepted | refused
-    reason: str = ""
-
-
-@dataclass
-class VehicleModel:
-    """One vehicle as heard over the link."""
-
-    name: str
-    member: MissionVehicle
-    colour: str
-    track: VehicleTrack
-    nav: NavState | None = None
-    pose: PoseInFrame | None = None
-    odometry: Odometry | None = None
-    truth: NavState | None = None
-    status: VehicleStatus | None = None
-    nav_status: NavStatus | None = None
-    path: PosesInFrame | None = None
-    mission: Mission | None = None
-    progress: MissionProgress | None = None
-    fence: Fence | None = None
-    scan: LaserScan | None = None
-    image: CompressedImage | None = None
-    chase: CompressedImage | None = None
-    gimbal: CompressedImage | None = None
-    gimbal_joints: JointStates | None = None
-    joints: JointStates | None = None
-    grid: Grid | None = None
-    team_map: Grid | None = None
-    world_from_map: FrameTransform | None = None
-    heard_at: dict[str, float] = field(default_factory=dict)
-    """Field -> when its newest message came [s, wall]."""
-    scan_points: Floats | None = None
-    """(n, 3) m, world: the newest scan as seen from where the vehicle was when it came."""
-    mapped: float | None = None
-    """0..1, the report's ``mapped_floor`` of the newest map."""
-    order: Order | None = None
-    goal_asked: tuple[float, float] | None = None
-    aim: GimbalCommand = field(default_factory=GimbalCommand)
-    """Where its gimbal was last told from here to look."""
-
-    @property
-    def flies(self) -> bool:
-        """Whether it is a fixed-wing aircraft."""
-        return self.member.file.kind == "fixed_wing"
-
-    @property
-    def leader(self) -> str:
-        """The vehicle that the mission has it follow; "" if none."""
-        follow = self.member.entry.job.follow
-        return follow.leader if follow is not None else ""
-
-    @property
-    def stopped(self) -> bool:
-        """Whether it reports that it obeys STOP ALL."""
-        return self.status is not None and self.status.stopped
-
-    @property
-    def heard(self) -> float | None:
-        """When its own running messages were last heard [s, wall]: neither latched ones nor the simulator's truth."""
-        return max((at for name, at in self.heard_at.items() if name in SIGNS_OF_LIFE), default=None)
-
-    @property
-    def place(self) -> DisplayPose | None:
-        """Its estimated pose: the newer of its two estimates."""
-        nav_at, pose_at = self.heard_at.get("nav", -1.0), self.heard_at.get("pose", -1.0)
-        if self.nav is not None and nav_at >= pose_at - STALE_AFTER:
-            return DisplayPose(array(self.nav.position), wxyz(self.nav.orientation))
-        if self.pose is not None:
-            return DisplayPose(array(self.pose.pose.position), wxyz(self.pose.pose.orientation))
-        return None
-
-    @property
-    def true_place(self) -> DisplayPose | None:
-        """Its true pose, where a simulator publishes it."""
-        return None if self.truth is None else DisplayPose(array(self.truth.position), wxyz(self.truth.orientation))
-
-    @property
-    def speed(self) -> float:
-        """Speed over ground [m/s]; of a ground vehicle the forward speed, negative backwards."""
-        if self.odometry is not None and not self.flies:
-            return self.odometry.linear_velocity.x
-        return float(np.hypot(self.nav.velocity.x, self.nav.velocity.y)) if self.nav is not None else 0.0
-
-    @property
-    def turn_rate(self) -> float:
-        """Turn rate [rad/s], left positive."""
-        if self.odometry is not None and not self.flies:
-            return self.odometry.angular_velocity.z
-        return self.nav.angular_velocity.z if self.nav is not None else 0.0
 
 
 class Model:
@@ -199,7 +71,7 @@ class Model:
 
     def _add(self, name: str, member: MissionVehicle) -> None:
         colour = COLOURS[len(self.vehicles) % len(COLOURS)]
-        self.vehicles[name] = VehicleModel(name, member, colour, _track(member))
+        self.vehicles[name] = VehicleModel(name, member, colour, track_of(member))
 
     def join(self, page: int) -> None:
         """Notes a browser that has connected; it shows a ground vehicle at first, if there is one."""
@@ -378,28 +250,3 @@ def model_name(told: str) -> str:
     if fault := name_fault(told):
         raise BadInput(f"its model: {fault}")
     return told
-
-
-def _track(member: MissionVehicle) -> VehicleTrack:
-    return VehicleTrack(spacing=2.0, jump=60.0) if member.file.kind == "fixed_wing" else VehicleTrack(spacing=0.04, jump=0.6)
-
-
-def scan_in_world(vehicle: VehicleModel) -> Floats | None:
-    """Points (n, 3) [m, world] of the newest scan; None while the vehicle's pose or its lidar is unknown."""
-    scan, place, lidar = vehicle.scan, vehicle.place, vehicle.member.file.sensors.lidar
-    if scan is None or place is None or lidar is None or not scan.ranges:
-        return None
-    flat = scan_points(scan)
-    in_body = apply(base_from_sensor(lidar.mount), np.column_stack((flat, np.zeros(len(flat)))))
-    in_world: Floats = in_body @ matrix(place.wxyz).T + place.position
-    return in_world
-
-
-def link_of(heard: float | None, t: float) -> tuple[str, str]:
-    """(word, CSS class) for the last message at ``heard`` and the time ``t`` [s, wall]: WAITING, LIVE, STALE 3 s, LINK LOST."""
-    if heard is None:
-        return "WAITING", "idle"
-    age = t - heard
-    if age < STALE_AFTER:
-        return "LIVE", "good"
-    return (f"STALE {age:.0f} s", "warn") if age < LOST_AFTER else (f"LINK LOST {age:.0f} s", "bad")

@@ -4,10 +4,10 @@ A picture goes to the page only while somebody has it before his eyes: each page
 """
 
 from base64 import b64encode
-from math import degrees, radians
+from math import degrees
 
 from services.gcs.state.session import BrowserSession
-from services.gcs.state.state import STALE_AFTER, VehicleModel
+from services.gcs.state.vehicle_model import STALE_AFTER, VehicleModel
 from services.gcs.state.wording import GIMBAL_MODES
 from services.gcs.view.controls import button, choice, does
 from services.gcs.view.markup import Html, html, joined
@@ -74,7 +74,7 @@ def _gimbal(v: VehicleModel) -> Html:
 
 
 def _slider(v: VehicleModel, axis: str, low: float, high: float, now: float) -> Html:
-    scale = html("min='{:.4f}' max='{:.4f}' step='{:.6f}' value='{:.4f}'", low, high, radians(1.0), now)
+    scale = html("min='{:.0f}' max='{:.0f}' step='1' value='{:.0f}'", *map(degrees, (low, high, now)))
     bar = html("<input type='range' {} {} aria-label='{} of {}'>", does("gimbal", v.name, axis), scale, axis, v.name)
     return html("<label>{}{}<b>{:.0f}°</b></label>", axis, bar, degrees(now))
 

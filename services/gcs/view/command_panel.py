@@ -3,7 +3,8 @@
 from services.gcs.offers import Offer, offers
 from services.gcs.state.control import called
 from services.gcs.state.session import BrowserSession
-from services.gcs.state.state import Model, VehicleModel
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button
 from services.gcs.view.markup import Html, html, joined
 from services.gcs.view.progress import order_line, progress_line
@@ -12,14 +13,12 @@ from services.gcs.view.progress import order_line, progress_line
 def command_panel(model: Model, v: VehicleModel, session: BrowserSession, t: float) -> Html:
     """The panel at ``t`` [s, wall] as one page sees it."""
     shown = offers(model, v)
-    modes = joined(_button(offer, v, session, t) for offer in shown if offer.name == "mode" and not offer.risky)
-    others = joined(_button(offer, v, session, t) for offer in shown if offer.name != "mode" or offer.risky)
+    buttons = joined(_button(offer, v, session, t) for offer in shown)
     return html(
-        "<h2 class='g-h'>{}</h2>{}<div class='g-two'>{}</div><div class='g-row g-gap'>{}</div>{}{}{}",
+        "<h2 class='g-h'>{}</h2>{}<div class='g-two'>{}</div>{}{}{}",
         v.name,
         _control(model, v, session, t),
-        modes,
-        others,
+        buttons,
         _reason(shown),
         order_line(v),
         progress_line(v),

@@ -9,7 +9,8 @@ from schemas.messages import PreviewReply
 from services.gcs.by_hand import ManualDriving
 from services.gcs.state.pointing import Pointed
 from services.gcs.state.session import ROOTS, VIEWS, BrowserSession, hidden_roots
-from services.gcs.state.state import Model, VehicleModel
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view import camera_panel, command_panel, facts, fleet, menus, records, status, teleoperation
 from services.gcs.view.cameras import ASPECT, cameras
 from services.gcs.view.controls import check_box, choice

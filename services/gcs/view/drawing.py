@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.gcs.actions import Asked
-from services.gcs.state.state import DisplayPose
+from services.gcs.state.vehicle_model import DisplayPose
 from services.gcs.view.markup import Html
 
 Floats = NDArray[np.float64]

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from math import atan2, degrees, hypot, pi
 
 from schemas.messages import NavStatus
-from services.gcs.state.state import VehicleModel
+from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.state.wording import mode_name
 from services.gcs.view.instruments import DriveInstruments, FlightInstruments, drive_panel, primary_flight_display
 from services.gcs.view.markup import Html, html, joined

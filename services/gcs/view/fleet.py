@@ -1,7 +1,8 @@
 """The fleet: a card for each vehicle, or one table of all of them."""
 
 from schemas.messages import NavStatus
-from services.gcs.state.state import Model, VehicleModel, link_of
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import VehicleModel, link_of
 from services.gcs.state.wording import mode_name
 from services.gcs.view.controls import does
 from services.gcs.view.markup import Html, html, joined

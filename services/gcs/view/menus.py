@@ -4,7 +4,8 @@ from math import atan2, degrees, hypot
 
 from services.gcs.state.pointing import Pointed
 from services.gcs.state.session import BrowserSession
-from services.gcs.state.state import Model, VehicleModel
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button
 from services.gcs.view.markup import Html, html, joined
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from schemas.messages import JointStates
-from services.gcs.state.state import DisplayPose
+from services.gcs.state.vehicle_model import DisplayPose
 from uvf.maths.rotations import IDENTITY, from_axis
 from uvf.models.aircraft.panels import Movable
 from uvf.models.vehicle.surface_joints import deflection

@@ -6,7 +6,8 @@ from math import degrees
 import numpy as np
 from numpy.typing import NDArray
 
-from services.gcs.state.state import Model, VehicleModel
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.markup import Html, html, joined
 from services.gcs.view.scenery import extent
 from services.gcs.view.view import mission_points

@@ -1,7 +1,7 @@
 """What became of the last order to a vehicle, and how far its job is."""
 
 from schemas.messages import MissionProgress, Mode, NavStatus
-from services.gcs.state.state import VehicleModel
+from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.markup import Html, html
 from uvf.runtime.messages.enum_names import enum_name
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from services.gcs.state.state import DisplayPose
+from services.gcs.state.vehicle_model import DisplayPose
 from services.gcs.view.bodies import rgb
 from services.gcs.view.drawing import Colour, MeshNode, Node, Polyline
 from uvf.maths.rotations import IDENTITY, from_euler, matrix

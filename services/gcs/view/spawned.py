@@ -1,7 +1,8 @@
 """What has been put into the running simulation, drawn at its true place: shapes, and vehicles that belong to no mission."""
 
 from schemas.messages import SimObject
-from services.gcs.state.state import DisplayPose, Model, model_name
+from services.gcs.state.state import Model, model_name
+from services.gcs.state.vehicle_model import DisplayPose
 from services.gcs.view.bodies import rgb, rover
 from services.gcs.view.drawing import Colour, Node
 from services.gcs.view.scenery import at_rest, coloured, merge

@@ -7,7 +7,8 @@ from schemas.messages import Clock, Event, NavStatus, Process, StopEngagement
 from services.gcs.offers import SOURCE
 from services.gcs.state.control import called
 from services.gcs.state.session import BrowserSession
-from services.gcs.state.state import Model, VehicleModel, link_of
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import VehicleModel, link_of
 from services.gcs.view.controls import button
 from services.gcs.view.markup import Html, html, joined
 from uvf.runtime.state.stop_all import told

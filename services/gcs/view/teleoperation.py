@@ -2,7 +2,7 @@
 
 from schemas.messages import Mode
 from services.gcs.by_hand import ManualDriving
-from services.gcs.state.state import VehicleModel
+from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.state.wording import mode_name
 from services.gcs.view.controls import button
 from services.gcs.view.markup import Html, html, joined

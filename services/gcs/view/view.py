@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import FrameTransform, Grid, NavStatus
-from services.gcs.state.state import DisplayPose, Model, VehicleModel
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import DisplayPose, VehicleModel
 from services.gcs.view import bodies
 from services.gcs.view.drawing import Colour, FloorPicture, Node, Points, Polyline, TextNode
 from services.gcs.view.fences import fence_nodes

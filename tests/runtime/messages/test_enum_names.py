@@ -20,8 +20,9 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services import gcs
+from services.gcs.actions import OpenTab
 from services.gcs.state.wording import mode_name
-from tests.services.gcs.fakes import Station
+from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 from uvf.runtime.bus import wire
 from uvf.runtime.messages.enum_names import enum_name
@@ -35,6 +36,7 @@ def station(monkeypatch):
     monkeypatch.setattr(wire, "error_in", lambda message: "")
     station = Station()
     station.run(0.5)
+    station.press(OpenTab(ME, "graph"))
     return station
 
 
@@ -58,7 +60,7 @@ def test_an_unknown_mode_is_told_apart_from_the_known_ones():
 
 def hear(station, vehicle, topic, message):
     station.script.put(vehicle, topic, message, station.t)
-    station.run(0.5, silent=True)
+    station.run(0.8, silent=True)
     return "".join(station.page.now.html.values())
 
 

@@ -1,9 +1,13 @@
 """A page that only remembers, and a ground station that runs on it."""
 
+import json
+import re
 from dataclasses import dataclass
+from html import unescape
 from typing import Any
 
-from services.gcs.actions import Join
+from services.gcs.actions import Beat, ClickGround, Hello, Join, OpenTab, Point
+from services.gcs.page.words import action_in
 from services.gcs.service import GroundStation
 from tests.services.gcs.scripted import Script, demo_site
 from uvf.runtime.contract.instances import ServiceInstance
@@ -11,6 +15,7 @@ from uvf.runtime.contract.service_runner import ServiceRunner
 
 ME, OTHER = 1, 2
 """Two browsers; the first one has joined from the start."""
+OPERATORS = {ME: "a" * 32, OTHER: "b" * 32}
 
 
 @dataclass
@@ -20,17 +25,39 @@ class Seen:
     nodes: Any
     places: Any
     html: Any
-    buttons: Any
-    image: Any
-    gimbal: Any
-    vehicle: str
+    own: Any
+    camera: Any
     hidden: Any
+    theme: Any
+
+    @property
+    def vehicle(self):
+        """The one on show, as the page's script reads it."""
+        found = re.search(r"g-shown' hidden data-name='([^']*)'", self.html["bar"])
+        return found[1] if found else ""
+
+    @property
+    def words(self):
+        """What each button, box and slider of the page would say, by its label."""
+        elements = re.findall(r"<(?:button|input)[^>]*data-do='([^']*)'[^>]*>([^<]*)", "".join(self.html.values()))
+        return {unescape(label).strip(): json.loads(unescape(word)) for word, label in elements}
+
+    def greyed(self, label):
+        """Whether a command is shown as one that cannot be given now."""
+        return bool(re.search(rf"aria-disabled='true'[^>]*>{re.escape(label)}<", self.html["commands"]))
+
+    def pressed(self):
+        """Labels of the buttons that are shown as pressed in."""
+        return re.findall(r"<button[^>]*aria-pressed='true'[^>]*>([^<]+)</button>", self.html["commands"])
 
 
 class FakePage:
+    """Tells of its beats as a browser does, unless it is ``asleep``."""
+
     def __init__(self):
         self.pictures = []
-        self.clicks = [Join(ME)]
+        self.clicks = [Join(ME), Hello(ME, OPERATORS[ME], ""), OpenTab(ME, "drive")]
+        self.asleep = False
         self.closed = False
 
     @property
@@ -40,14 +67,14 @@ class FakePage:
     def seen_by(self, page):
         picture = self.pictures[-1]
         own = picture.panels[page]
-        html, buttons = {**picture.html, **own.html}, [*picture.buttons, *own.buttons]
-        return Seen(picture.nodes, picture.places, html, buttons, own.image, own.gimbal, own.vehicle, own.hidden)
+        return Seen(picture.nodes, picture.places, own.html, own.nodes, own.camera, own.hidden, own.theme)
 
     def show(self, picture):
         self.pictures.append(picture)
 
     def actions(self):
-        taken, self.clicks = self.clicks, []
+        beats = [Beat(page, f"{own.t:.3f}") for page, own in self.pictures[-1].panels.items()] if self.pictures and not self.asleep else []
+        taken, self.clicks = [*beats, *self.clicks], []
         return taken
 
     def close(self):
@@ -80,3 +107,20 @@ class Station:
     def press(self, *actions, seconds=0.1):
         self.page.clicks += actions
         self.run(seconds)
+
+    def push(self, label, page=ME, seconds=0.1):
+        """Presses the button with this label, as it is shown on a page."""
+        self.press(action_in(json.dumps([1, *self.page.seen_by(page).words[label]]), page), seconds=seconds)
+
+    def join_other(self):
+        """The second browser comes, with another operator before it."""
+        self.press(Join(OTHER), Hello(OTHER, OPERATORS[OTHER], ""))
+
+    def go(self, x, y, page=ME):
+        """Clicks a place as seen from the south-west, 10 m up, and chooses from its menu to go there."""
+        self.press(click(x, y, page), Point(page, "go"))
+
+
+def click(x, y, page=ME):
+    """A click that looks at the point from the south-west, 10 m up."""
+    return ClickGround(page, (x - 5.0, y - 7.0, 10.0), (5.0, 7.0, -10.0))

@@ -22,6 +22,7 @@ from schemas.messages import (
     Odometry,
     PoseInFrame,
     PosesInFrame,
+    PreviewReply,
     Reply,
     Timestamp,
     Vector3,
@@ -91,13 +92,15 @@ class Script:
         self.job = "explore"
         self._publishers = {}
         for name in (UGV, UAV):
-            for request in (topics.GOAL, topics.CANCEL, topics.ARM, topics.SET_MODE):
+            for request in (topics.GOAL, topics.CANCEL, topics.ARM, topics.SET_MODE, topics.VEHICLE_COMMAND):
                 self.bus.serve(request.at(name), lambda query, n=name, r=request: self._answer(n, r, query))
+        self.bus.serve(topics.PREVIEW.at(UGV), self._preview)
         self.bus.subscribe(topics.STOP.by("gcs").at("sys"), topics.STOP.qos, self._hear_stop)
         self.bus.subscribe(topics.DRIVE.by("gcs").at(UGV), topics.DRIVE.qos, self._hear_drive)
         self.bus.subscribe(topics.GIMBAL.by("gcs").at(UAV), topics.GIMBAL.qos, self._hear_gimbal)
         self.mode = {UGV: Mode.MODE_MISSION, UAV: Mode.MODE_MISSION}
         self.armed = {UGV: True, UAV: True}
+        self.landed = False
         self.goal = (4.5, 4.2)
         self.put(UAV, topics.MISSION, self._mission(), 0.0)
 
@@ -119,6 +122,14 @@ class Script:
         if self.accept and isinstance(message, ModeRequest):
             self.mode[name] = message.mode
         reply = Reply(accepted=self.accept, reason="" if self.accept else "the <goal> lies inside a wall")
+        query.answer(reply.SerializeToString(deterministic=True), query.stamp_ns)
+
+    def _preview(self, query):
+        """A straight way."""
+        to = topics.PREVIEW.message.FromString(query.payload).position
+        poses = [planar_pose(3.3, 2.0, 0.0), planar_pose(to.x, to.y, 0.0)]
+        found = PreviewReply(accepted=True, poses=poses, length=4.2, duration=9.0, clearance=0.3)
+        reply = found if self.accept else PreviewReply(reason="no way")
         query.answer(reply.SerializeToString(deterministic=True), query.stamp_ns)
 
     def put(self, owner, topic, message, t):
@@ -173,6 +184,7 @@ class Script:
             kind=kind,
             mode=self.mode[name],
             armed=self.armed[name],
+            landed=self.landed,
             command_source=source,
             stopped=bool(self.stops) and self.stops[-1].engaged,
             throttle=0.54,

@@ -3,10 +3,10 @@
 import pytest
 
 from schemas.messages import CancelRequest, Mode, ModeRequest, NavStatus
-from services.gcs.actions import Cancel, ClickGround, Join, Leave, LeaveWheel, Rescale, Select, SetMode, Steer, StopAll, TakeWheel
+from services.gcs.actions import Command, Hello, Join, Leave, LeaveWheel, Rescale, Select, Steer, StopAll, TakeWheel
 from services.gcs.by_hand import PATIENCE, ManualDriving
-from services.gcs.page.viser_script import action_in
-from tests.services.gcs.fakes import ME, OTHER, Station
+from services.gcs.page.words import action_in
+from tests.services.gcs.fakes import ME, OPERATORS, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV
 from uvf.control.teleop_drive import START_ANGULAR, START_LINEAR, STILL, ZEROS, TeleopCommand
 
@@ -58,9 +58,9 @@ def test_without_a_word_it_is_told_to_stand_after_half_a_second_and_then_nothing
         LeaveWheel(ME),
         Leave(ME),
         Select(ME, UAV),
-        SetMode(UGV, "Hold"),
-        StopAll(True),
-        ClickGround(UGV, (3.0, 2.0, 5.0), (0.0, 0.0, -1.0)),
+        Command(ME, UGV, "hold"),
+        StopAll(ME),
+        Command(ME, UGV, "mission"),
     ],
 )
 def test_it_is_told_to_stand_at_once_when(driven, action):
@@ -69,11 +69,18 @@ def test_it_is_told_to_stand_at_once_when(driven, action):
     assert driven.script.drives[-1] == (0.0, 0.0)
 
 
-def test_only_the_driver_is_heard_and_another_page_may_take_over(driven):
+def test_only_the_driver_is_heard_and_another_page_of_the_same_operator_may_take_over(driven):
     driven.press(Steer(OTHER, 1.0, 0.0), Rescale(OTHER, "f"))
     assert driven.script.drives == []
-    driven.press(Join(OTHER), TakeWheel(OTHER, UGV), Steer(OTHER, 1.0, 0.0))
+    driven.press(Join(OTHER), Hello(OTHER, OPERATORS[ME], ""), TakeWheel(OTHER, UGV), Steer(OTHER, 1.0, 0.0))
     assert driven.script.drives[-1] == pytest.approx((START.linear, 0.0))
+
+
+def test_another_operator_has_to_be_given_control_first(driven):
+    driven.join_other()
+    driven.press(TakeWheel(OTHER, UGV), Steer(OTHER, 1.0, 0.0))
+    assert driven.script.drives == []
+    assert "controls burger: ask for control first" in driven.model.vehicles[UGV].order.reason
 
 
 def test_the_scales_change_by_a_tenth_within_what_the_vehicle_can(driven):
@@ -86,7 +93,7 @@ def test_nobody_takes_the_wheel_of_what_would_not_move(station, hindered):
     if hindered == "disarmed":
         station.script.armed[UGV] = False
         station.run(0.2)
-    station.press({"stopped": StopAll(True), "aircraft": Select(ME, UAV)}.get(hindered, Select(ME, UGV)))
+    station.press({"stopped": StopAll(ME), "aircraft": Select(ME, UAV)}.get(hindered, Select(ME, UGV)))
     station.press(TakeWheel(ME, UAV if hindered == "aircraft" else UGV))
     station.press(Steer(ME, 1.0, 0.0))
     assert station.script.drives == [] and modes_asked(station) == []
@@ -107,30 +114,30 @@ def test_commands_of_nobody_are_none():
 @pytest.mark.parametrize(
     ("said", "action"),
     [
-        ('["wheel:on", 1]', TakeWheel(ME, UGV)),
-        ('["wheel:off", 1]', LeaveWheel(ME)),
-        ('["steer:1:-0.5", 1]', Steer(ME, 1.0, -0.5)),
-        ('["scale:r", 1]', Rescale(ME, "r")),
-        ('["select:burger", 1]', Select(ME, "burger")),
-        ('["steer:2:0", 1]', None),
-        ('["steer:nan:0", 1]', None),
-        ('["steer:1", 1]', None),
-        ('["wheel:<i>:on", 1]', None),
-        ('["shape:1.2", 1]', None),
+        ('[1, "take-wheel", "burger"]', TakeWheel(ME, UGV)),
+        ('[1, "leave-wheel"]', LeaveWheel(ME)),
+        ('[1, "steer", 1, -0.5]', Steer(ME, 1.0, -0.5)),
+        ('[1, "scale", "r"]', Rescale(ME, "r")),
+        ('[1, "select", "burger"]', Select(ME, "burger")),
+        ('[1, "steer", 2, 0]', None),
+        ('[1, "steer", NaN, 0]', None),
+        ('[1, "steer", 1]', None),
+        ('[1, "steer", "1", 0]', None),
+        ('[1, "steer", 1, 0, 0]', None),
+        ('["select", "burger"]', None),
+        ('[1, "page", 7]', None),
         ("{", None),
     ],
 )
 def test_the_words_of_the_page_are_read(said, action):
-    assert action_in(said, ME, UGV) == action
+    assert action_in(said, ME) == action
 
 
 def test_a_goal_can_be_cancelled_while_it_is_driven_to(station):
-    assert "Cancel goal" not in {b.label for b in station.page.now.buttons}
+    assert "Cancel goal" not in station.page.now.words
     station.script.job = "goal"
     station.run(0.2)
     assert station.model.vehicles[UGV].nav_status.state == NavStatus.DRIVING
-    (button,) = (b for b in station.page.now.buttons if b.label == "Cancel goal")
-    station.press(button.action)
-    assert button.action == Cancel(UGV)
+    station.push("Cancel goal")
     assert [(n, m.source) for n, m in station.script.asked if isinstance(m, CancelRequest)] == [(UGV, "gcs")]
     assert station.model.vehicles[UGV].order.text == "cancel the goal"

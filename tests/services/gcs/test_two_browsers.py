@@ -3,10 +3,21 @@
 import pytest
 
 from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
-from services.gcs.actions import Arm, ClickGround, Join, Layer, Leave, Looking, Select, SetMode, ShowCamera, Steer, TakeWheel
+from services.gcs.actions import (
+    Command,
+    Layer,
+    Leave,
+    Looking,
+    OpenTab,
+    Select,
+    ShowCamera,
+    Steer,
+    TakeWheel,
+)
 from services.gcs.by_hand import PATIENCE
+from services.gcs.state.control import ANSWER_WITHIN
 from services.gcs.state.session import ROOTS
-from tests.services.gcs.fakes import ME, OTHER, Station
+from tests.services.gcs.fakes import ME, OPERATORS, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, with_eyes
 
 
@@ -15,12 +26,9 @@ def station():
     """One shows the rover, the other one the aircraft."""
     station = Station(site=with_eyes(demo_site()))
     station.run(0.5)
-    station.press(Join(OTHER), Select(OTHER, UAV))
+    station.join_other()
+    station.press(Select(OTHER, UAV), OpenTab(OTHER, "fly"), OpenTab(ME, "drive"), seconds=0.4)
     return station
-
-
-def button(station, page, label):
-    return next(b for b in station.page.seen_by(page).buttons if b.label == label)
 
 
 def asked(station, kind):
@@ -33,7 +41,7 @@ def test_each_sees_its_own_vehicle_at_once(station):
     assert "gcs-drive" in mine.html["instrument"] and "gcs-pfd" in theirs.html["instrument"]
     assert f"data-name='{UGV}'" in mine.html["bar"] and f"data-name='{UAV}'" in theirs.html["bar"]
     assert "throttle" in theirs.html["facts"] and "throttle" not in mine.html["facts"]
-    assert {b.label for b in theirs.buttons} - {b.label for b in mine.buttons} == {"Return", f"Disarm {UAV}"}
+    assert "Return" in theirs.words and "Return" not in mine.words
 
 
 def test_no_word_about_the_one_stands_under_the_name_of_the_other(station):
@@ -44,17 +52,17 @@ def test_no_word_about_the_one_stands_under_the_name_of_the_other(station):
 
 
 def test_the_same_button_means_the_vehicle_of_him_who_presses_it(station):
-    station.press(button(station, ME, "Hold").action, seconds=0.2)
+    station.push("Hold", seconds=0.2)
     assert asked(station, ModeRequest) == [UGV]
-    station.press(button(station, OTHER, "Hold").action)
+    station.push("Hold", OTHER)
     assert asked(station, ModeRequest) == [UGV, UAV]
 
 
 def test_a_button_pressed_as_the_vehicle_changes_means_the_one_it_was_shown_for(station):
-    hold = button(station, ME, "Hold").action
-    station.press(Select(ME, UAV), hold)
+    hold = station.page.now.words["Hold"]
+    station.press(Select(ME, UAV), Command(ME, *hold[1:]))
     assert asked(station, ModeRequest) == [UGV]
-    assert not {b.key for b in station.page.seen_by(ME).buttons if UGV in b.key}
+    assert UGV not in station.page.now.html["commands"]
 
 
 def tracks(station):
@@ -67,7 +75,8 @@ def test_each_hides_layers_for_itself_and_what_nobody_shows_is_not_drawn(station
     assert tracks(station)
     station.press(Layer(ME, "Tracks", False))
     assert not tracks(station)
-    station.press(Leave(OTHER), Join(OTHER))
+    station.press(Leave(OTHER))
+    station.join_other()
     assert tracks(station) and "/track" in station.page.seen_by(ME).hidden and "/track" not in station.page.seen_by(OTHER).hidden
 
 
@@ -79,34 +88,95 @@ def test_all_that_is_drawn_of_a_vehicle_but_itself_hangs_below_a_layer(station):
 
 
 def test_a_click_on_the_floor_sends_the_vehicle_of_him_who_clicks(station):
-    station.press(Select(OTHER, UGV), Select(ME, UAV), ClickGround(UGV, (4.0, 3.0, 9.0), (0.0, 0.0, -1.0)))
+    station.press(Select(OTHER, UGV), Select(ME, UAV))
+    station.go(4.0, 3.0, OTHER)
     assert asked(station, GoalRequest) == [UGV]
     assert station.model.vehicles[UAV].order is None
 
 
 def test_nobody_confirms_what_another_one_has_asked_for(station):
-    station.press(Select(OTHER, UGV), Arm(ME, UGV, False), Arm(OTHER, UGV, False))
+    station.press(Select(OTHER, UGV), Command(ME, UGV, "disarm"), Command(OTHER, UGV, "disarm"))
     assert asked(station, ArmRequest) == []
-    assert all(button(station, page, f"Confirm: disarm {UGV}") for page in (ME, OTHER))
-    station.press(Arm(OTHER, UGV, False))
+    assert all(f"Confirm: disarm {UGV}" in station.page.seen_by(page).words for page in (ME, OTHER))
+    station.press(Command(OTHER, UGV, "disarm"))
     assert asked(station, ArmRequest) == [UGV]
 
 
 def test_cameras_are_chosen_and_looked_at_by_each_alone(station):
     station.model.vehicles[UAV].chase = station.model.vehicles[UAV].gimbal = None
-    station.press(Select(ME, UAV), ShowCamera(ME, "chase"), Looking(ME), seconds=0.4)
-    assert "data-gcs='camera:chase' aria-pressed='true'" in station.page.seen_by(ME).html["cameras"]
-    assert "data-gcs='camera:gimbal' aria-pressed='true'" in station.page.seen_by(OTHER).html["cameras"]
-    assert station.page.seen_by(ME).gimbal is None and station.page.seen_by(OTHER).gimbal.vehicle == UAV
+    station.press(Select(ME, UAV), ShowCamera(ME, "chase"), Looking(ME), seconds=0.6)
+    mine, theirs = (station.page.seen_by(page).html["cameras"] for page in (ME, OTHER))
+    assert "aria-pressed='true' >chase" in mine and "aria-pressed='true' >gimbal" in theirs
+    assert "type='range'" not in mine and "type='range'" in theirs
 
 
 def test_one_drives_while_the_other_one_looks_around(station):
     station.press(TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0))
     assert station.script.drives[-1][0] > 0
-    station.press(Select(OTHER, UGV), SetMode(UAV, "Hold"), Steer(ME, 1.0, 0.0), Steer(OTHER, -1.0, 0.0))
+    station.press(Select(OTHER, UGV), OpenTab(OTHER, "drive"), Command(ME, UAV, "hold"), Steer(ME, 1.0, 0.0), Steer(OTHER, -1.0, 0.0))
     assert station.script.drives[-1][0] > 0
     assert "data-driver='mine'" in station.page.seen_by(ME).html["wheel"]
     assert "driven from another page" in station.page.seen_by(OTHER).html["wheel"]
+
+
+def control(station):
+    return station.model.control.holders
+
+
+def test_the_first_command_takes_control_and_another_operators_is_refused(station):
+    station.press(Select(OTHER, UGV))
+    station.push("Hold")
+    assert control(station) == {UGV: OPERATORS[ME]}
+    station.push("Mission", OTHER)
+    assert asked(station, ModeRequest) == [UGV]
+    assert "operator aaaa controls burger" in station.model.vehicles[UGV].order.reason
+    station.run(0.4)
+    assert "you control burger" in station.page.seen_by(ME).html["bar"]
+    assert "operator aaaa controls burger" in station.page.seen_by(OTHER).html["bar"]
+
+
+def test_control_is_asked_for_and_handed_over(station):
+    station.press(Select(OTHER, UGV))
+    station.push("Hold", seconds=0.4)
+    station.push("Ask for control", OTHER, seconds=0.4)
+    assert control(station) == {UGV: OPERATORS[ME]}
+    station.push("Hand over", seconds=0.4)
+    assert control(station) == {UGV: OPERATORS[OTHER]}
+    station.push("Mission", OTHER)
+    assert asked(station, ModeRequest) == [UGV, UGV]
+    said = [line.text for line in station.model.log if line.of_operator]
+    assert "operator bbbb asks for control" in said and "operator bbbb controls it from now on" in said
+
+
+def test_control_may_be_kept(station):
+    station.press(Select(OTHER, UGV))
+    station.push("Hold", seconds=0.4)
+    station.push("Ask for control", OTHER, seconds=0.4)
+    station.push("Keep", seconds=ANSWER_WITHIN + 0.5)
+    assert control(station) == {UGV: OPERATORS[ME]}
+
+
+def test_who_does_not_answer_gives_control_away(station):
+    station.press(Select(OTHER, UGV))
+    station.press(TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0), seconds=0.4)
+    station.push("Ask for control", OTHER, seconds=ANSWER_WITHIN + 0.2)
+    assert control(station) == {UGV: OPERATORS[OTHER]}
+    assert station.service._commander.by_hand.holder(UGV) is None
+
+
+def test_whose_page_is_gone_controls_nothing_any_more(station):
+    station.push("Hold")
+    station.press(Select(OTHER, UGV), Leave(ME))
+    station.push("Mission", OTHER)
+    assert control(station) == {UGV: OPERATORS[OTHER]}
+    assert asked(station, ModeRequest) == [UGV, UGV]
+
+
+def test_anybody_stops_all(station):
+    station.push("Hold")
+    station.push("■ STOP ALL", OTHER)
+    assert station.script.stops[-1].engaged
+    assert "by operator bbbb" in "".join(line.text for line in station.model.log)
 
 
 def test_whoever_goes_lets_go_at_once_and_is_forgotten(station):

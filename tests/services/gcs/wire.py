@@ -2,9 +2,11 @@
 
 import asyncio
 import json
+import re
 import socket
 import threading
 import time
+from html import unescape
 
 import msgspec
 import viser
@@ -68,7 +70,7 @@ class Browser:
     def __init__(self, port):
         self.port = port
         self.elements = {}
-        self.scripts = []
+        self.count = 0
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
         self._thread.start()
@@ -96,8 +98,6 @@ class Browser:
             self.elements.pop(message["uuid"], None)
         elif kind.startswith("Gui") and "props" in message:
             self.elements[message["uuid"]] = {**message["props"], "value": message.get("value"), "kind": kind}
-        elif kind == "RunJavascriptMessage":
-            self.scripts.append(message["source"])
 
     @property
     def alive(self):
@@ -107,24 +107,29 @@ class Browser:
         """All words on show."""
         return "".join(e["content"] for e in list(self.elements.values()) if e["kind"] == "GuiHtmlMessage")
 
-    def button(self, label):
-        """Its id; None when there is no such button."""
-        found = [uuid for uuid, e in list(self.elements.items()) if e["kind"] == "GuiButtonMessage" and e["label"] == label]
-        return found[-1] if found else None
+    def words(self):
+        """What the buttons of its panels say, by their labels."""
+        found = re.findall(r"<button[^>]*data-do='([^']*)'[^>]*>([^<]*)", self.html())
+        return {unescape(label).strip(): json.loads(unescape(word)) for word, label in found}
 
     def labels(self):
-        return {e["label"] for e in list(self.elements.values()) if e["kind"] == "GuiButtonMessage"}
+        return set(self.words())
 
     def send(self, message):
         self._do(self._socket.send(msgspec.msgpack.encode(message)))
 
     def press(self, label):
-        self.send({"type": "GuiUpdateMessage", "uuid": self.button(label), "updates": {"value": True}})
+        self.say(*self.words()[label])
 
-    def say(self, text):
-        """What the page's own script would say through its hidden field."""
-        bridge = next(uuid for uuid, e in list(self.elements.items()) if e["kind"] == "GuiTextMessage")
-        self.send({"type": "GuiUpdateMessage", "uuid": bridge, "updates": {"value": json.dumps([text, time.monotonic()])}})
+    @property
+    def bridge(self):
+        """Id of the hidden field that the page's own script speaks through."""
+        return next(uuid for uuid, e in list(self.elements.items()) if e["kind"] == "GuiTextMessage")
+
+    def say(self, *word):
+        """What the page's own script would say."""
+        self.count += 1
+        self.send({"type": "GuiUpdateMessage", "uuid": self.bridge, "updates": {"value": json.dumps([self.count, *word])}})
 
     def close(self):
         self._do(self._socket.close())

@@ -1,19 +1,19 @@
 """From messages (ENU, FLU) to the autopilot's own values (NED, FRD)."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import astuple
 
 from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, OrbitRequest, Vector3
 from services.autopilot.air.mode_table import FlightMode
 from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures
-from uvf.guidance.approach import with_courses
-from uvf.guidance.flight_plan import ItemKind, PlanItem, PlanProgress
-from uvf.guidance.route import Circle, Place
+from uvf.guidance.flight_plan import PlanProgress
+from uvf.guidance.route import Circle
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
 from uvf.runtime.messages.convert import seconds, wxyz
 from uvf.runtime.messages.plan_ids import mission_id
+from uvf.runtime.messages.plan_items import place_of
 
 OLDEST_FIX, OLDEST_SAMPLE = 1.0, 5.0  # s
 AHEAD = 0.1  # s by which a sensor's clock may be before ours
@@ -22,19 +22,6 @@ STATIC = (5_000.0, 120_000.0)  # Pa, 20 km up to below the Dead Sea
 DIFFERENTIAL = (-50_000.0, 50_000.0)  # Pa, of 285 m/s
 TEMPERATURE = (150.0, 350.0)  # K
 TURNED_OFF = 5.0  # m/s, of an aircraft that nobody has steered
-KINDS = {
-    MissionItem.WAYPOINT: ItemKind.WAYPOINT,
-    MissionItem.ORBIT: ItemKind.ORBIT,
-    MissionItem.RETURN: ItemKind.RETURN,
-    MissionItem.JUMP: ItemKind.JUMP,
-    MissionItem.SPEED: ItemKind.SPEED,
-    MissionItem.TRIGGER: ItemKind.TRIGGER,
-    MissionItem.TRIGGER_DISTANCE: ItemKind.TRIGGER_DISTANCE,
-    MissionItem.TAKEOFF: ItemKind.TAKEOFF,
-    MissionItem.LAND: ItemKind.LAND,
-    MissionItem.LAND_START: ItemKind.LAND_START,
-    MissionItem.SET_HOME: ItemKind.SET_HOME,
-}
 MODES = {
     Mode.MODE_HOLD: FlightMode.HOLD,
     Mode.MODE_MISSION: FlightMode.MISSION,
@@ -106,14 +93,9 @@ def left_fix(state: NavState, t: float) -> GnssFix | None:
     return GnssFix(p.y + age * v.y, p.x + age * v.x, p.z, v.y, v.x, 0.0, 0.0, sigma, sigma, TURNED_OFF)
 
 
-def place(v: Vector3) -> Place:
-    """A position (x, y, z) of a message [m, world, ENU] as a place: north, east and height [m]."""
-    return Place(v.y, v.x, v.z)
-
-
 def circle(request: OrbitRequest) -> Circle:
     """A radius of 0 is left to the pilot."""
-    return Circle(place(request.centre), request.radius)
+    return Circle(place_of(request.centre), request.radius)
 
 
 def attitude(state: NavState) -> tuple[float, float, float]:
@@ -126,35 +108,6 @@ def stand(progress: MissionProgress | None) -> PlanProgress:
     if progress is None or progress.state in (MissionProgress.NO_MISSION, MissionProgress.NOT_STARTED):
         return PlanProgress(None, -1, 0, False)
     return PlanProgress(progress.current, progress.reached, progress.laps, progress.state == MissionProgress.COMPLETE)
-
-
-def items(messages: Iterable[MissionItem]) -> list[PlanItem]:
-    """Raises ValueError for a kind that cannot be flown yet and for a number that is none."""
-    return with_courses([_item(i, m) for i, m in enumerate(messages)])
-
-
-def _item(index: int, m: MissionItem) -> PlanItem:
-    if m.kind not in KINDS:
-        name = MissionItem.Kind.Name(m.kind) if m.kind in MissionItem.Kind.values() else f"kind {m.kind}"
-        raise ValueError(f"item {index}: {name} is not flown by this autopilot; {', '.join(k.value for k in ItemKind)} are")
-    p = m.position
-    if not all(map(math.isfinite, (p.x, p.y, p.z, m.acceptance_radius, m.hold, m.radius, m.turns, m.speed, m.course, m.distance))):
-        raise ValueError(f"item {index} holds a number that is not finite")
-    return PlanItem(
-        KINDS[m.kind],
-        place(m.position),
-        m.hold,
-        m.radius,
-        m.turns,
-        m.speed,
-        m.jump_to,
-        m.repeat,
-        course=math.pi / 2 - m.course if m.HasField("course") else None,
-        acceptance=m.acceptance_radius or math.inf,
-        to_altitude=m.to_altitude,
-        distance=m.distance,
-        here=not m.HasField("position"),
-    )
 
 
 def with_id(messages: Sequence[MissionItem]) -> Mission:

@@ -12,6 +12,7 @@ from uvf.guidance.flyable import advice
 from uvf.guidance.route import Place
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.plan_items import place_of, plan_items
 
 
 class ActivePlans:
@@ -27,7 +28,7 @@ class ActivePlans:
     def set_mission(self, mission: Mission, params: AirParams) -> str:
         """Replaces the mission."""
         try:
-            items = intake.items(mission.items)
+            items = plan_items(mission.items)
         except ValueError as error:
             return str(error)
         refusal = mission_fault(items, self._mode_manager.fence.fencing, params) or self._mode_manager.load(items, params)
@@ -46,7 +47,7 @@ class ActivePlans:
 
     def set_rally(self, rally: RallyPoints, params: AirParams) -> str:
         """Replaces the rally points."""
-        places = [intake.place(point) for point in rally.points]
+        places = [place_of(point) for point in rally.points]
         refusal = return_mode.fault(places, self._mode_manager.home or Place(0.0, 0.0, 0.0), self._mode_manager.fence.fencing, params)
         if not refusal:
             self.rally, self._mode_manager.rally = rally, tuple(places)

@@ -2,7 +2,7 @@
 
 import { on, say } from './link.js';
 
-const LEAST = 26;  // px: a vehicle is drawn no smaller than this, wherever it is looked at from
+const LEAST = 30;  // px: a vehicle is drawn no smaller than this, wherever it is looked at from
 const MOST = { fixed_wing: 40, ground: 6 };  // times its own size
 const page = () => window.__viserMutable;
 
@@ -21,7 +21,7 @@ setInterval(() => shape(true), 2000);
 
 on('slot', (name, slot) => {
   if (name !== 'views') return;
-  const now = slot.querySelector('[aria-pressed=true]')?.dataset.view || '', at = slot.querySelector('[data-views]')?.dataset.views || '';
+  const now = slot.querySelector('[aria-pressed=true]')?.textContent, at = slot.querySelector('[data-views]')?.dataset.views || '';
   if (at !== slot.dataset.at) { slot.dataset.at = at; touched = false; }  // a view that was chosen counts as not turned by hand
   following = now === 'Follow';
 });
@@ -69,6 +69,45 @@ function enlarge() {
   }
 }
 
+// A vehicle outside of the view has a sign at the edge where it is: pressed, it brings the vehicle into view.
+const signs = document.getElementById('gcs-signs');
+signs.addEventListener('click', event => {
+  const sign = event.target.closest('button');
+  if (sign) { say('select', sign.dataset.name); say('view', 'Follow'); }
+});
+
+function point() {
+  const { camera, nodeRefFromName, canvas } = page(), wide = canvas.clientWidth, high = canvas.clientHeight, seen = new Set();
+  for (const card of document.querySelectorAll('#gcs .g-card')) {
+    const node = nodeRefFromName['/vehicles/' + card.dataset.name];
+    if (!node) continue;
+    const at = node.getWorldPosition(node.position.clone()), away = camera.position.distanceTo(at);
+    const eye = at.clone().applyMatrix4(camera.matrixWorldInverse), place = at.clone().project(camera);
+    if (eye.z < 0 && Math.abs(place.x) < 0.98 && Math.abs(place.y) < 0.98) continue;
+    seen.add(card.dataset.name);
+    const flat = Math.hypot(eye.x, eye.y) || 1, x = eye.x / flat, y = -eye.y / flat;
+    const reach = Math.min((wide / 2 - 70) / Math.max(Math.abs(x), 1e-6), (high / 2 - 60) / Math.max(Math.abs(y), 1e-6));
+    show(card, Math.atan2(y, x), [wide / 2 + x * reach, high / 2 + y * reach], away);
+  }
+  for (const sign of [...signs.children]) if (!seen.has(sign.dataset.name)) sign.remove();
+}
+
+function show(card, angle, [x, y], away) {
+  const { name } = card.dataset;
+  let sign = [...signs.children].find(sign => sign.dataset.name === name);
+  if (!sign) {
+    sign = Object.assign(document.createElement('button'), { type: 'button', className: 'g-sign', title: `Follow ${name}` });
+    sign.dataset.name = name;
+    sign.append(Object.assign(document.createElement('i'), { textContent: '➤' }), document.createElement('span'));
+    signs.append(sign);
+  }
+  sign.style.setProperty('--c', card.style.getPropertyValue('--c'));
+  sign.firstChild.style.transform = `rotate(${angle}rad)`;
+  const words = `${name} ${away < 10 ? away.toFixed(1) : away.toFixed(0)} m`;
+  if (sign.lastChild.textContent !== words) sign.lastChild.textContent = words;
+  sign.style.transform = `translate(calc(${x.toFixed(0)}px - 50%), calc(${y.toFixed(0)}px - 50%))`;
+}
+
 let last = null;
 function follow() {
   const chosen = document.querySelector('#gcs-bar .g-shown'), control = page().cameraControl;
@@ -91,6 +130,7 @@ function frame() {
   if (!page()?.canvas || !page().camera || !window.__viserSceneTree?.getState()['']) return;
   follow();
   enlarge();
+  point();
   hang();
 }
 frame();

@@ -8,7 +8,8 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Clock, Event, FrameTransform, LaserScan, NavState, PoseInFrame, Vector3
-from services.gcs.state.state import LOST_AFTER, STALE_AFTER, Model, link_of
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import LOST_AFTER, STALE_AFTER, link_of
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, uav_at, ugv_at
 from uvf.models.vehicle.sensors import Mount

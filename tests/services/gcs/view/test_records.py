@@ -6,15 +6,16 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Event, Health, Process, Processes, Refusal
-from services.gcs.actions import SetMode
-from tests.services.gcs.fakes import Station
-from tests.services.gcs.scripted import UAV, UGV
+from services.gcs.actions import OpenTab
+from tests.services.gcs.fakes import ME, Station
+from tests.services.gcs.scripted import UAV
 
 
 @pytest.fixture
 def station():
     station = Station()
     station.run(0.5)
+    station.press(OpenTab(ME, "graph"), seconds=0.1)
     return station
 
 
@@ -53,7 +54,8 @@ def test_what_a_running_process_waits_for_stands_under_it(station):
 
 
 def test_what_the_operator_did_stays_on_top_of_any_number_of_events(station):
-    station.press(SetMode(UGV, "Hold"))
+    station.press(OpenTab(ME, "log"))
+    station.push("Hold")
     for i in range(300):
         station.script.say(UAV, f"mission item {i} reached", Event.INFO, t=float(i))
         station.run(0.05)
@@ -64,7 +66,7 @@ def test_what_the_operator_did_stays_on_top_of_any_number_of_events(station):
 def test_each_event_bears_the_class_that_the_page_filters_by(station):
     for severity in (Event.INFO, Event.NOTICE, Event.ERROR):
         station.script.say(UAV, "x", severity, t=1.0)
-    station.run(0.5)
+    station.press(OpenTab(ME, "log"), seconds=0.8)
     assert re.findall(r"g-k-(\w+)", station.page.now.html["log"]) == ["warning", "notice", "routine"]
 
 

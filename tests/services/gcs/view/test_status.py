@@ -4,9 +4,9 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Clock, Event, ExternalVehicle, NavStatus, Process, Processes, StopCommand, Timestamp, VehicleStatus
-from services.gcs.actions import StopAll
+from services.gcs.actions import OpenTab, ReleaseStop, StopAll
 from services.gcs.view.status import ALERT_LENGTH, ALERTS_SHOWN, alerts
-from tests.services.gcs.fakes import Station
+from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 
 
@@ -34,7 +34,8 @@ def test_a_held_clock_is_told_until_it_runs_again(station):
     station.run(0.3, silent=True)
     assert told(station) == ["⚠ simulation clock held: waiting for slam"]
     station.run(0.3)
-    assert told(station) == [] and "clock held" not in station.page.now.html["bar"]
+    station.press(OpenTab(ME, "log"), seconds=0.8)
+    assert told(station) == [] and "clock held" not in station.page.now.html["alerts"]
     assert "clock held at 1.00 s" in station.page.now.html["log"]
 
 
@@ -67,18 +68,18 @@ def test_a_lost_vehicle_is_named(station):
 
 
 def test_stop_all_says_since_when_by_whom_and_who_heeds_it(station):
-    assert "not engaged" in station.page.now.html["stop"]
-    station.press(StopAll(True), seconds=0.5)
+    assert "Release STOP" not in station.page.now.html["stop"]
+    station.press(StopAll(ME), seconds=0.5)
     stop = station.page.now.html["stop"]
     assert "by this page (pressed on the page), 00:00:01" in stop and f"heeded by {UGV}, {UAV}" in stop and "Release STOP" in stop
-    station.press(StopAll(False), seconds=0.5)
-    assert "not engaged" in station.page.now.html["stop"]
+    station.press(ReleaseStop(ME), seconds=0.5)
+    assert "Release STOP" not in station.page.now.html["stop"] and "STOP ALL" in station.page.now.html["stop"]
 
 
 def test_a_stop_of_somebody_else_is_theirs_and_stands_in_the_log(station):
     command = StopCommand(engaged=True, source="launcher", reason="slam was given up", timestamp=Timestamp(seconds=1))
     station.script.put("sys", topics.STOP.by("launcher"), command, 1.0)
-    station.run(0.5)
+    station.press(OpenTab(ME, "log"), seconds=0.8)
     assert told(station) == ["■ STOP ALL ENGAGED by the launcher (slam was given up), 00:00:01"]
     assert f"not confirmed by {UGV}, {UAV}" in station.page.now.html["stop"]
     assert "STOP ALL engaged by launcher (slam was given up)" in station.page.now.html["log"]
@@ -95,6 +96,6 @@ def test_many_failed_processes_and_lost_guests_hide_no_vehicle_of_the_mission(st
     assert [line.split()[1] for line in shown[1:3]] == ["ghost0:", "ghost1:"]
     assert len(shown) == ALERTS_SHOWN + 1 and shown[-1] == "and 198 more"
     assert max(map(len, shown)) == ALERT_LENGTH
-    assert station.page.now.html["bar"].count("g-alert") <= ALERTS_SHOWN + 1
+    assert station.page.now.html["alerts"].count("g-alert") <= ALERTS_SHOWN + 1
     station.model.vehicles[UAV].heard_at = {"status": -100.0}
     assert told(station)[0].startswith(f"✖ {UAV}: LINK LOST"), "the gravest first"

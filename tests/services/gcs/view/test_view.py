@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from schemas.messages import Clock, FrameTransform, Quaternion, Vector3
-from services.gcs.actions import ClickGround, Layer
+from services.gcs.actions import Layer
 from services.gcs.state.state import Model
 from services.gcs.view.drawing import FloorPicture, MeshNode, Points, Polyline, TextNode
 from services.gcs.view.view import SceneView, floor_picture
@@ -84,7 +84,8 @@ def test_the_path_the_scan_and_the_goal_are_drawn(station):
 
 
 def test_an_accepted_click_moves_the_goal(station):
-    station.press(ClickGround(UGV, (4.0, 3.0, 9.0), (0.0, 0.0, -1.0)), seconds=0.3)
+    station.go(4.0, 3.0)
+    station.run(0.3)
     assert station.page.now.nodes[f"/goal/{UGV}"].points[:, :2].mean(axis=0) == pytest.approx((4.0, 3.0), abs=0.05)
 
 

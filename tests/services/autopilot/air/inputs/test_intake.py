@@ -9,6 +9,7 @@ from services.autopilot.air.inputs import intake
 from uvf.guidance.flight_plan import ItemKind
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.plan_items import plan_items
 
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
 
@@ -53,13 +54,13 @@ def test_air_that_there_is_not_is_no_reading(reading):
 
 def test_items_keep_their_meaning():
     orbit = MissionItem(kind=MissionItem.ORBIT, position=Vector3(x=1, y=2, z=3), radius=-80, turns=2)
-    (item,) = intake.items([orbit])
+    (item,) = plan_items([orbit])
     assert (item.kind, item.place.north, item.place.east, item.place.height) == (ItemKind.ORBIT, 2, 1, 3)
     assert (item.radius, item.turns) == (-80, 2)
 
 
 def test_a_course_is_turned_from_the_mathematical_to_the_compass_sense_and_may_be_absent():
-    south_east, some = intake.items([MissionItem(course=-math.pi / 4, acceptance_radius=5.0), MissionItem()])
+    south_east, some = plan_items([MissionItem(course=-math.pi / 4, acceptance_radius=5.0), MissionItem()])
     assert (south_east.course, south_east.acceptance) == pytest.approx((3 * math.pi / 4, 5.0))
     assert (some.course, some.acceptance) == (None, math.inf)
 
@@ -67,7 +68,7 @@ def test_a_course_is_turned_from_the_mathematical_to_the_compass_sense_and_may_b
 @pytest.mark.parametrize("kind", [98, 99])
 def test_an_item_that_cannot_be_flown_yet_is_named(kind):
     with pytest.raises(ValueError, match=r"item 0: .* is not flown"):
-        intake.items([MissionItem(kind=kind)])
+        plan_items([MissionItem(kind=kind)])
 
 
 def test_the_wire_form_of_an_item_is_kept():

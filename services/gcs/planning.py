@@ -1,0 +1,138 @@
+"""The missions that are drawn on the page: edited, flown ahead of time, and put into force."""
+
+from schemas.messages import Mission, MissionItem, MissionRequest, SetCurrentRequest, Vector3
+from services.gcs.offers import SOURCE
+from services.gcs.planning_actions import (
+    OfPlan,
+    PlanAdd,
+    PlanChoose,
+    PlanClear,
+    PlanMove,
+    PlanRemove,
+    PlanSet,
+    PlanShift,
+    PlanTake,
+)
+from services.gcs.state.plan_draft import PLACED, PlanDraft
+from services.gcs.state.plan_outlook import PlanOutlook, outlook_of
+from services.gcs.state.state import Model
+from services.gcs.state.vehicle_model import VehicleModel
+from uvf.guidance.mission_preview import PreviewFlight
+from uvf.models.vehicle.flight_params import AirParams
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.plan_items import plan_items
+
+FIRST_HEIGHT = 60.0  # m, of a first waypoint where nothing tells a better one
+STEPS = 12  # of the flight ahead, with each step of the page: some milliseconds
+SOON = 4  # steps of the page after an edit, before which nothing is flown ahead: who drags a waypoint edits ten times a second
+
+
+class Planning:
+    """Keeps the drafts of a model up to date, and flies ahead those that somebody looks at."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._taken: dict[str, Mission | None] = {}
+        self._flights: dict[str, PreviewFlight] = {}
+        self._waits: dict[str, tuple[int, int]] = {}
+
+    def draft(self, v: VehicleModel) -> PlanDraft:
+        """The draft of a vehicle; while nobody has touched it, it is what is in force there."""
+        if v.draft.touched or v.mission is self._taken.get(v.name):
+            return v.draft
+        self._taken[v.name] = v.mission
+        v.draft.take(v.mission)
+        return v.draft
+
+    def edit(self, v: VehicleModel, action: OfPlan) -> None:
+        """Carries out an edit."""
+        draft = self.draft(v)
+        match action:
+            case PlanAdd(_, _, kind, x, y):
+                draft.add(kind, (x, y, self._height(v)))
+            case PlanSet(_, _, index, name, value):
+                draft.set(index, name, value)
+            case PlanMove(_, _, index, x, y):
+                draft.move(index, x, y)
+            case PlanRemove(_, _, index):
+                draft.remove(index)
+            case PlanShift(_, _, index, by):
+                draft.shift(index, by)
+            case PlanChoose(_, _, index):
+                draft.chosen = index if draft.chosen != index else -1
+            case PlanTake():
+                draft.take(v.mission)
+            case PlanClear():
+                draft.clear()
+
+    def _height(self, v: VehicleModel) -> float:
+        """m, world, of a new item: as the last one, or as the vehicle."""
+        if not v.flies:
+            return 0.0
+        heights = [item.position.z for item in v.draft.items if item.kind in PLACED]
+        here = v.nav.position.z if v.nav is not None and v.nav.position.z > FIRST_HEIGHT / 2 else FIRST_HEIGHT
+        return heights[-1] if heights else round(here)
+
+    def upload(self, v: VehicleModel) -> MissionRequest:
+        """The request that puts the draft into force."""
+        items = [_as_sent(item, v) for item in self.draft(v).items]
+        v.draft.touched = False  # what is accepted comes back as the mission in force
+        self._taken[v.name] = v.mission
+        return MissionRequest(mission=Mission(items=items), source=SOURCE)
+
+    def refused(self, v: VehicleModel) -> None:
+        """The upload has been refused: the draft is not on the vehicle."""
+        v.draft.touched = True
+
+    def go_to(self, index: int) -> SetCurrentRequest:
+        """The request that goes on with an item."""
+        return SetCurrentRequest(index=index, source=SOURCE)
+
+    def advance(self) -> None:
+        """Flies the drafts ahead that somebody looks at, some steps further."""
+        for name in {session.vehicle for session in self._model.sessions.values() if session.tab == "plan"}:
+            vehicle = self._model.vehicles.get(name)
+            if vehicle is not None:
+                self._advance(vehicle)
+
+    def _advance(self, v: VehicleModel) -> None:
+        draft = self.draft(v)
+        if v.outlook is None or v.outlook.edits != draft.edits:
+            v.outlook = outlook_of(draft, self._params(v))
+            self._waits[v.name] = (draft.edits, SOON)
+            self._flights.pop(v.name, None)
+        edits, left = self._waits[v.name]
+        if left > 0:
+            self._waits[v.name] = (edits, left - 1)
+        elif left == 0:
+            self._fly(v, v.outlook)
+
+    def _params(self, v: VehicleModel) -> AirParams | None:
+        """Of an aircraft; the standard ones where its file's make no sense."""
+        if not v.flies:
+            return None
+        try:
+            return v.member.params("autopilot_air", AirParams)
+        except BadInput:
+            return AirParams()
+
+    def _fly(self, v: VehicleModel, outlook: PlanOutlook) -> None:
+        """Only what could be flown is, and only to its end."""
+        params = self._params(v)
+        if params is None or outlook.fault or outlook.is_flown:
+            return
+        if v.name not in self._flights:
+            wind = (v.nav.wind.y, v.nav.wind.x) if v.nav is not None else (0.0, 0.0)
+            self._flights[v.name] = PreviewFlight(plan_items(v.draft.items), params, wind)
+        flight = self._flights[v.name]
+        outlook.is_flown = flight.advance(STEPS)
+        outlook.show(flight.so_far)
+
+
+def _as_sent(item: MissionItem, v: VehicleModel) -> MissionItem:
+    sent = MissionItem()
+    sent.CopyFrom(item)
+    sent.ClearField("origin")
+    if sent.kind in PLACED and not sent.HasField("position"):
+        sent.position.CopyFrom(Vector3())
+    return sent
