@@ -13,6 +13,7 @@ from schemas.messages import (
     GimbalCommand,
     GoalRequest,
     HomeCommand,
+    MissionRequest,
     Mode,
     ModeRequest,
     PreviewRequest,
@@ -41,6 +42,8 @@ from services.gcs.browsing import Browsing
 from services.gcs.by_hand import ManualDriving
 from services.gcs.offers import SOURCE, STOPPED, offer_of
 from services.gcs.orders import OrderBook
+from services.gcs.planning import Planning
+from services.gcs.planning_actions import OfPlan, PlanGoTo, PlanUpload
 from services.gcs.state.control import called
 from services.gcs.state.pointing import TOOLS, Pointed
 from services.gcs.state.session import OLD_AFTER, BrowserSession
@@ -87,6 +90,7 @@ class Commander:
         self.by_hand = ManualDriving({n: TeleopCommand(b.max_linear, b.max_angular) for n, b in bodies.items() if b is not None})
         self._browsing = Browsing(model, self.by_hand)
         self._orders = OrderBook(model)
+        self.planning = Planning(model)
 
     def act(self, t: float, actions: Sequence[Asked]) -> Outbox:
         """The messages to send for the actions asked for at ``t`` [s, wall]."""
@@ -129,6 +133,8 @@ class Commander:
                 self.by_hand.rescale(t, page, key)
             case AimGimbal() | GimbalMode():
                 self._aim(t, session, action, out)
+            case OfPlan():
+                self._plan(t, session, action, out)
 
     def _reason_against(self, session: BrowserSession, v: VehicleModel) -> str:
         """Why this page may not command the vehicle: another operator controls it."""
@@ -190,6 +196,35 @@ class Commander:
             case GimbalMode(_, _, mode) if mode in GIMBAL_MODES:
                 aim.mode = GIMBAL_MODES[mode]
         vehicle.aim = out.gimbal[vehicle.name] = aim
+
+    def _plan(self, t: float, session: BrowserSession, action: OfPlan, out: Outbox) -> None:
+        """Edits, uploads and item jumps of a mission; all of them are the controlling operator's."""
+        vehicle = self._model.vehicles.get(action.vehicle)
+        if vehicle is None:
+            return
+        match action:
+            case PlanUpload():
+                why = vehicle.outlook.fault if vehicle.outlook is not None else ""
+                risky = not why and vehicle.status is not None and vehicle.status.armed and vehicle.status.mode == Mode.MODE_MISSION
+                if risky and not session.confirms(vehicle.name, "upload", t):
+                    session.to_confirm = (vehicle.name, "upload", t)
+                    return
+                session.to_confirm = None
+                request: Message = self.planning.upload(vehicle)
+                name = "set_mission"
+            case PlanGoTo(_, _, index):
+                request, name, why = self.planning.go_to(index), "current", ""
+            case _ if why := self._reason_against(session, vehicle):
+                self._orders.refuse(t, vehicle, "edit the mission", why)
+                return
+            case _:
+                session.pointed = None
+                self.planning.edit(vehicle, action)
+                return
+        if self._begin(t, session, vehicle.name, request, why) is not None:
+            out.call(name, vehicle.name, request)
+        elif isinstance(request, MissionRequest):
+            self.planning.refused(vehicle)
 
     def _stop(self, t: float, session: BrowserSession, engaged: bool, out: Outbox) -> None:
         if engaged:
@@ -315,6 +350,8 @@ class Commander:
                 self._browsing.preview(vehicle.name, answer)
                 continue
             accepted = self._orders.settle(t, vehicle, answer)
+            if isinstance(answer.request, MissionRequest) and not accepted:
+                self.planning.refused(vehicle)
             if isinstance(answer.request, GoalRequest) and not accepted:
                 vehicle.goal_asked = None
                 self._undo_mode(vehicle.name)

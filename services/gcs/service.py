@@ -24,6 +24,7 @@ from schemas.messages import (
     LaserScan,
     Mission,
     MissionProgress,
+    MissionRequest,
     ModeRequest,
     NavState,
     NavStatus,
@@ -34,6 +35,7 @@ from schemas.messages import (
     PreviewRequest,
     Processes,
     Reply,
+    SetCurrentRequest,
     SimObjects,
     StopCommand,
     VehicleCommandRequest,
@@ -117,6 +119,8 @@ class GroundStation(Service):
         mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
         vehicle_command: list[Answer[VehicleCommandRequest, Reply]] = answers(topics.VEHICLE_COMMAND)
         preview: list[Answer[PreviewRequest, PreviewReply]] = answers(topics.PREVIEW)
+        set_mission: list[Answer[MissionRequest, Reply]] = answers(topics.SET_MISSION)
+        current: list[Answer[SetCurrentRequest, Reply]] = answers(topics.SET_CURRENT)
 
     class Outputs(Writes):
         """Commands and requests to the vehicles."""
@@ -130,6 +134,8 @@ class GroundStation(Service):
         mode: list[ModeRequest] = call(topics.SET_MODE)
         vehicle_command: list[VehicleCommandRequest] = call(topics.VEHICLE_COMMAND)
         preview: list[PreviewRequest] = call(topics.PREVIEW)
+        set_mission: list[MissionRequest] = call(topics.SET_MISSION)
+        current: list[SetCurrentRequest] = call(topics.SET_CURRENT)
 
     def __init__(self, site: Scenario, page: Page) -> None:
         self._page = page
@@ -169,6 +175,7 @@ class GroundStation(Service):
         self._commander.hear(t, answers)
         out = self._commander.act(t, self._page.actions())
         self._commander.expire(t)
+        self._commander.planning.advance()
         self._page.show(self._composer.picture(t))
         outputs = self.Outputs()
         outputs.update(out.said())

@@ -31,7 +31,8 @@ class ViserPanel:
         self._hidden: frozenset[str] = frozenset()
         self._looked = (-1, -SETTLES)
         self._theme = ""
-        bridge = client.gui.add_text("page", "", visible=False)
+        with client._websock_connection.get_message_buffer().sanctioned_dead_writes():
+            bridge = client.gui.add_text("page", "", visible=False)
         bridge.on_update(self._on_word)
         self._bridge = bridge._impl.uuid
         self._scene = ViserScene(client, lambda vehicle, event: None)

@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import msgspec
 
-from services.gcs import actions
+from services.gcs import actions, planning_actions
 
 WORDS: Mapping[str, type[actions.Asked]] = {
     "hello": actions.Hello,
@@ -30,6 +30,16 @@ WORDS: Mapping[str, type[actions.Asked]] = {
     "scale": actions.Rescale,
     "gimbal": actions.AimGimbal,
     "gimbal-mode": actions.GimbalMode,
+    "plan-add": planning_actions.PlanAdd,
+    "plan-set": planning_actions.PlanSet,
+    "plan-move": planning_actions.PlanMove,
+    "plan-remove": planning_actions.PlanRemove,
+    "plan-shift": planning_actions.PlanShift,
+    "plan-choose": planning_actions.PlanChoose,
+    "plan-take": planning_actions.PlanTake,
+    "plan-clear": planning_actions.PlanClear,
+    "plan-upload": planning_actions.PlanUpload,
+    "plan-go-to": planning_actions.PlanGoTo,
 }
 
 

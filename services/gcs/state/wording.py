@@ -5,7 +5,17 @@ from typing import Any
 
 from google.protobuf.message import Message
 
-from schemas.messages import ArmRequest, CancelRequest, GimbalCommand, GoalRequest, Mode, ModeRequest, VehicleCommandRequest
+from schemas.messages import (
+    ArmRequest,
+    CancelRequest,
+    GimbalCommand,
+    GoalRequest,
+    MissionRequest,
+    Mode,
+    ModeRequest,
+    SetCurrentRequest,
+    VehicleCommandRequest,
+)
 from uvf.runtime.messages.enum_names import enum_name
 
 GIMBAL_MODES: Mapping[str, Any] = {"Follow": GimbalCommand.FOLLOW, "Lock": GimbalCommand.LOCK, "Body": GimbalCommand.BODY}
@@ -23,6 +33,10 @@ def describe(request: Message) -> str:
             return "arm" if request.arm else "disarm"
         case CancelRequest():
             return "cancel the goal"
+        case MissionRequest():
+            return f"mission of {len(request.mission.items)} items"
+        case SetCurrentRequest():
+            return f"go on with item {request.index + 1}"
         case VehicleCommandRequest() if request.HasField("home"):
             return f"home at ({request.home.position.x:.1f}, {request.home.position.y:.1f}) m"
     return request.DESCRIPTOR.name

@@ -4,30 +4,33 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from schemas.messages import PreviewReply
 from services.gcs.by_hand import ManualDriving
 from services.gcs.state.pointing import Pointed
 from services.gcs.state.session import ROOTS, VIEWS, BrowserSession, hidden_roots
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
-from services.gcs.view import camera_panel, command_panel, facts, fleet, menus, records, status, teleoperation
+from services.gcs.view import camera_panel, command_panel, facts, fleet, menus, plan, records, status, teleoperation
 from services.gcs.view.cameras import ASPECT, cameras
 from services.gcs.view.controls import check_box, choice
-from services.gcs.view.drawing import CameraView, Node, PagePanel, Picture, Polyline
+from services.gcs.view.drawing import CameraView, Colour, Node, PagePanel, Picture, Polyline
 from services.gcs.view.markup import Html, html, joined, trusted
 from services.gcs.view.overview import Overview
 from services.gcs.view.view import UP, SceneView
 
+Floats = NDArray[np.float64]
+
 HELP = Path(__file__).with_name("help.html")
-PREVIEWED = (150, 160, 175)
-FAST = ("stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
+COLOURS: Mapping[str, Colour] = {"/own/way": (150, 160, 175), "/own/drawn": (140, 150, 168), "/own/flown": (232, 74, 214)}
+FAST = ("plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
 EVERY = 2
 """Steps between two drawings of these, which tell at once; of the rest one is drawn with each step."""
 SLOW = ("fleet", "cameras", "facts", "overview", "log", "processes", "notices", "layers", "views", "hint", "help")
 OF_TAB: Mapping[str, tuple[str, ...]] = {
     "fly": ("instrument", "picture", "cameras", "facts"),
     "drive": ("instrument", "picture", "wheel", "cameras", "facts"),
+    "plan": ("plan", "handles"),
     "graph": ("processes",),
     "log": ("log",),
     "help": ("help",),
@@ -50,7 +53,7 @@ class Composer:
         """Page -> the (vehicle, tab) that it showed, and what it showed of it."""
         self._drawn: dict[tuple[str, str], Html] = {}
         """What has been drawn in this step: (what, of which vehicle); browsers that show the same share it."""
-        self._previews: dict[int, tuple[object, dict[str, Node]]] = {}
+        self._previews: dict[int, dict[str, tuple[object, Node]]] = {}
         self._step = 0
 
     def picture(self, t: float) -> Picture:
@@ -99,6 +102,7 @@ class Composer:
         }
         if v is not None:
             always |= {
+                "handles": _nothing,
                 "fleet": self._once("fleet", v, lambda: fleet.fleet(model, v, t)),
                 "commands": lambda: command_panel.command_panel(model, v, session, t),
                 "menu": lambda: menus.menu(model, session),
@@ -110,6 +114,8 @@ class Composer:
                 "picture": lambda: camera_panel.picture(v, session, t),
                 "cameras": lambda: camera_panel.panel(v, session, t),
                 "facts": self._once("facts", v, lambda: facts.facts(v, t)),
+                "plan": lambda: plan.plan_panel(v, session, t),
+                "handles": self._once("handles", v, lambda: plan.handles(v)),
             }
         return always | {name: in_tabs[name] for name in OF_TAB.get(session.tab, ()) if name in in_tabs}
 
@@ -129,20 +135,31 @@ class Composer:
         return None if session.touched else views.get(session.view)
 
     def _preview(self, session: BrowserSession) -> dict[str, Node]:
-        """The way that the planner would take to the place that this page has clicked."""
-        pointed = session.pointed
-        of: Pointed | PreviewReply | None = pointed.preview if pointed is not None else None
-        if pointed is not None and pointed.to is not None:
-            of = pointed
-            points = np.array(((pointed.x, pointed.y, 3 * UP), (*pointed.to, 3 * UP)))
-        elif isinstance(of, PreviewReply) and len(of.poses) > 1:
-            points = np.array([(pose.position.x, pose.position.y, 3 * UP) for pose in of.poses])
-        else:
-            return {}
-        before = self._previews.get(session.page)
-        if before is None or before[0] is not of:
-            self._previews[session.page] = (of, {"/own/way": Polyline(points, PREVIEWED, 3.0)})
-        return self._previews[session.page][1]
+        """What only this page sees: the way to the place that it has clicked, and the mission that is drawn in its tab Plan."""
+        made = self._previews.setdefault(session.page, {})
+        lines: dict[str, tuple[object, Floats | None]] = {"/own/way": _way(session.pointed)}
+        v = self._model.vehicles.get(session.vehicle)
+        if v is not None and v.outlook is not None and session.tab == "plan":
+            lines["/own/drawn"] = ((v.outlook, "drawn"), v.outlook.places)
+            lines["/own/flown"] = ((v.outlook, len(v.outlook.line)), v.outlook.line)
+        nodes: dict[str, Node] = {}
+        for name, (of, points) in lines.items():
+            if points is None or len(points) < 2:
+                continue
+            if name not in made or made[name][0] != of:
+                made[name] = (of, Polyline(points, COLOURS[name], 3.0))
+            nodes[name] = made[name][1]
+        return nodes
+
+
+def _way(pointed: Pointed | None) -> tuple[object, Floats | None]:
+    """(what it is made from, (n, 3) m, world) of a measured distance, or of the way that the planner would take."""
+    if pointed is not None and pointed.to is not None:
+        return (pointed.x, pointed.y, *pointed.to), np.array(((pointed.x, pointed.y, 3 * UP), (*pointed.to, 3 * UP)))
+    found = pointed.preview if pointed is not None else None
+    if found is None:
+        return None, None
+    return id(found), np.array([(pose.position.x, pose.position.y, 3 * UP) for pose in found.poses]).reshape(-1, 3)
 
 
 def _views(session: BrowserSession) -> Html:
@@ -151,3 +168,7 @@ def _views(session: BrowserSession) -> Html:
 
 def _layers(session: BrowserSession) -> Html:
     return html("<div class='g-checks'>{}</div>", joined(check_box(name, name in session.layers, "layer", name) for name in ROOTS))
+
+
+def _nothing() -> Html:
+    return html("")

@@ -23,17 +23,19 @@ def menu(model: Model, session: BrowserSession) -> Html:
     if at.tool == "face":
         return _hung((at.x, at.y), html("<b>Heading</b><span>Click where {} is to look</span>{}", vehicle.name, _close()))
     where = html("<span class='g-where'><span>x {:.1f} m, y {:.1f} m</span><span>{}</span></span>", at.x, at.y, vehicle.name)
-    return _hung((at.x, at.y), joined((where, _way(at, vehicle), *_choices(vehicle), _close())))
+    return _hung((at.x, at.y), joined((where, _way(at, vehicle), *_choices(at, vehicle), _close())))
 
 
 def _hung(place: tuple[float, float], content: Html) -> Html:
     return html("<div class='g-menu' role='group' aria-label='At this place' data-x='{:.3f}' data-y='{:.3f}'>{}</div>", *place, content)
 
 
-def _choices(v: VehicleModel) -> list[Html]:
+def _choices(at: Pointed, v: VehicleModel) -> list[Html]:
     go = button(f"Circle here: {v.name}" if v.flies else f"Go here: {v.name}", "point", "go", style="g-btn g-main")
     face = [] if v.flies else [button("Go here and look …", "point", "face")]
-    return [go, *face, button("Measure from here", "point", "measure"), button("Set home here", "point", "home")]
+    kinds = (("Add waypoint", "waypoint"), ("Add circle", "orbit")) if v.flies else (("Add waypoint", "waypoint"),)
+    add = [button(label, "plan-add", v.name, kind, round(at.x, 2), round(at.y, 2), more=html("data-tab='plan'")) for label, kind in kinds]
+    return [go, *face, *add, button("Measure from here", "point", "measure"), button("Set home here", "point", "home")]
 
 
 def _close() -> Html:

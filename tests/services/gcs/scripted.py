@@ -15,6 +15,7 @@ from schemas.messages import (
     Mission,
     MissionItem,
     MissionProgress,
+    MissionRequest,
     Mode,
     ModeRequest,
     NavState,
@@ -38,6 +39,7 @@ from uvf.runtime.messages.convert import occupancy_grid, planar_pose, quaternion
 from uvf.runtime.messages.step_times import NS
 
 UGV, UAV = "burger", "milvus"
+SERVED = (topics.GOAL, topics.CANCEL, topics.ARM, topics.SET_MODE, topics.VEHICLE_COMMAND, topics.SET_MISSION, topics.SET_CURRENT)
 LEGS = ((200.0, -150.0), (200.0, 150.0), (-200.0, 150.0), (-200.0, -150.0))
 
 
@@ -92,7 +94,15 @@ class Script:
         self.job = "explore"
         self._publishers = {}
         for name in (UGV, UAV):
-            for request in (topics.GOAL, topics.CANCEL, topics.ARM, topics.SET_MODE, topics.VEHICLE_COMMAND):
+            for request in (
+                topics.GOAL,
+                topics.CANCEL,
+                topics.ARM,
+                topics.SET_MODE,
+                topics.VEHICLE_COMMAND,
+                topics.SET_MISSION,
+                topics.SET_CURRENT,
+            ):
                 self.bus.serve(request.at(name), lambda query, n=name, r=request: self._answer(n, r, query))
         self.bus.serve(topics.PREVIEW.at(UGV), self._preview)
         self.bus.subscribe(topics.STOP.by("gcs").at("sys"), topics.STOP.qos, self._hear_stop)
@@ -121,6 +131,8 @@ class Script:
             self.goal = (message.position.x, message.position.y)
         if self.accept and isinstance(message, ModeRequest):
             self.mode[name] = message.mode
+        if self.accept and isinstance(message, MissionRequest):
+            self.put(name, topics.MISSION, message.mission, 0.0)
         reply = Reply(accepted=self.accept, reason="" if self.accept else "the <goal> lies inside a wall")
         query.answer(reply.SerializeToString(deterministic=True), query.stamp_ns)
 

@@ -4,6 +4,7 @@ import { on, say } from './link.js';
 import { opened, show } from './tabs.js';
 import './driving.js';
 import { shape } from './scene.js';
+import './handles.js';
 
 const root = document.documentElement;
 const stored = (key, value) => { try { if (value !== undefined) localStorage.setItem(key, value); return localStorage.getItem(key) || ''; } catch { return ''; } };

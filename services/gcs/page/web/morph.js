@@ -34,4 +34,6 @@ function patch(old, fresh) {
 }
 
 // What the reader has opened stays open, whatever the server drew.
-const isOwn = (element, name) => element.nodeName === 'DETAILS' && name === 'open';
+// What is being moved stays under the pointer.
+const isOwn = (element, name) => (element.nodeName === 'DETAILS' && name === 'open') || (element.dataset.held && /^(data-[xyz]|data-held|style)$/.test(name))
+  || (name === 'style' && element.classList.contains('g-handle'));

@@ -26,7 +26,7 @@ on('slot', (name, slot) => {
   following = now === 'Follow';
 });
 
-function project(x, y, z) {
+export function project(x, y, z) {
   const { camera, canvas } = page(), root = window.__viserSceneTree.getState()[''];
   const [w, a, b, c] = root.wxyz, tx = 2 * (b * z - c * y), ty = 2 * (c * x - a * z), tz = 2 * (a * y - b * x);
   const point = camera.position.clone().set(x + w * tx + (b * tz - c * ty), y + w * ty + (c * tx - a * tz), z + w * tz + (a * ty - b * tx));
@@ -35,9 +35,31 @@ function project(x, y, z) {
   return { x: box.left + (point.x + 1) / 2 * box.width, y: box.top + (1 - point.y) / 2 * box.height, ahead: point.z < 1 };
 }
 
+// Where the ray through a point of the window [px] meets the level z [m]: [x, y] in the world, or null.
+export function onLevel(px, py, z) {
+  const { camera, canvas } = page(), box = canvas.getBoundingClientRect();
+  const far = camera.position.clone().set((px - box.left) / box.width * 2 - 1, 1 - (py - box.top) / box.height * 2, 0.5).unproject(camera);
+  const eye = world(camera.position), through = world(far), down = through[2] - eye[2];
+  const way = (z - eye[2]) / down;
+  if (!Number.isFinite(way) || way <= 0) return null;
+  return [eye[0] + way * (through[0] - eye[0]), eye[1] + way * (through[1] - eye[1])];
+}
+
+// From the renderer's axes into the world's: the turn of viser's root node undone.
+function world(point) {
+  const [w, a, b, c] = window.__viserSceneTree.getState()[''].wxyz, { x, y, z } = point;
+  const tx = 2 * (c * y - b * z), ty = 2 * (a * z - c * x), tz = 2 * (b * x - a * y);
+  return [x + w * tx + (c * ty - b * tz), y + w * ty + (a * tz - c * tx), z + w * tz + (b * tx - a * ty)];
+}
+
 // What has data-x, data-y, data-z hangs at that place of the world [m].
 function hang() {
-  for (const label of document.querySelectorAll('#gcs .stage [data-x]')) {
+  for (const handle of document.querySelectorAll('#gcs .g-handle')) {
+    const at = project(Number(handle.dataset.x), Number(handle.dataset.y), Number(handle.dataset.z)), box = page().canvas.getBoundingClientRect();
+    handle.style.visibility = at.ahead ? 'visible' : 'hidden';
+    handle.style.transform = `translate(calc(${(at.x - box.left).toFixed(1)}px - 50%), calc(${(at.y - box.top).toFixed(1)}px - 50%))`;
+  }
+  for (const label of document.querySelectorAll('#gcs .g-menu[data-x]')) {
     const at = project(Number(label.dataset.x), Number(label.dataset.y), Number(label.dataset.z || 0));
     const box = page().canvas.getBoundingClientRect(), seen = at.ahead && at.x > box.left && at.x < box.right && at.y > box.top && at.y < box.bottom;
     label.style.visibility = seen ? 'visible' : 'hidden';

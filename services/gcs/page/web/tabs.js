@@ -5,6 +5,7 @@ import { fill, on, say } from './link.js';
 // Each with the slots that its panel consists of.
 const TABS = {
   fly: ['Fly', 'instrument', 'cameras', 'picture', 'facts'],
+  plan: ['Plan', 'plan'],
   drive: ['Drive', 'instrument', 'wheel', 'cameras', 'picture', 'facts'],
   graph: ['Graph', 'processes'],
   log: ['Log', 'log'],
