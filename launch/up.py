@@ -1,20 +1,23 @@
 """``uvf up``: every process of a mission, supervised, until Ctrl-C."""
 
 import time
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from threading import Event as Flag
 
 from launch import catalogue, settings
 from launch.launcher import LOOK, Launcher, Say, stop_flag
 from launch.output import RotatingLog
+from launch.runs import new_run
 from launch.vehicles.mission_faults import warnings_from_outside
 from launch.waits import Waits
 from schemas import topics
-from schemas.messages import Clock
+from schemas.messages import Clock, LaunchRequest, Reply
 from uvf.models.scenario import load_scenario
-from uvf.runtime.bus.interface import Sample
-from uvf.runtime.bus.wire import guarded
+from uvf.models.yaml_data import BadInput, nearest
+from uvf.runtime.bus.interface import Query, Sample
+from uvf.runtime.bus.wire import Malformed, decode, guarded
 from uvf.runtime.messages.refusals import Refusals
 
 ROUTER_PATIENCE = 10.0  # s
@@ -30,13 +33,25 @@ class StartOptions:
     seconds: float | None = None
 
 
-def up(wanted: StartOptions, folder: Path, say: Say) -> int:
-    """Runs until Ctrl-C, SIGTERM or the time is over; returns the exit code. Raises BadInput before anything starts."""
+def up(wanted: StartOptions, folder: Path, say: Say, new_folder: Callable[[], Path] = new_run) -> int:
+    """Runs until Ctrl-C, SIGTERM or the time is over; returns the exit code. Raises BadInput before anything starts.
+
+    A mission that is asked for meanwhile (``LAUNCH``) takes the place of the one that runs, with a folder of its own.
+    """
+    stop = stop_flag()
+    while True:
+        run = _run_once(wanted, folder, say, stop)
+        if run.next_mission is None or stop.is_set():
+            return 1 if run.launcher.failed else 0
+        wanted, folder = replace(wanted, mission=run.next_mission), new_folder()
+        say(f"mission {wanted.mission}; logs in {folder}")
+
+
+def _run_once(wanted: StartOptions, folder: Path, say: Say, stop: Flag) -> "RunningMission":
     site = load_scenario(settings.mission_path(wanted.mission))
     kinds = [k for k in catalogue.needed(site) if wanted.page or k.name != "gcs"]
     for line in warnings_from_outside(site):
         say(line)
-    stop = stop_flag()
     run = RunningMission(wanted, folder, say)
     try:
         run.start([k.name for k in kinds])
@@ -45,7 +60,19 @@ def up(wanted: StartOptions, folder: Path, say: Say) -> int:
         say("stopping")
         run.launcher.stop()
         say(f"{run.simulated:.1f} s simulated; log and output in {folder}")
-    return 1 if run.launcher.failed else 0
+    return run
+
+
+def launch_fault(mission: str) -> str:
+    """Why a mission that is asked for cannot be started; "" if it can."""
+    names = sorted(path.stem for path in (settings.ROOT / "missions").glob("*.yaml"))
+    if mission not in names:
+        return f"no mission '{mission[:80]}'; {nearest(mission[:80], names)}"
+    try:
+        load_scenario(settings.mission_path(mission))
+    except BadInput as error:
+        return str(error)
+    return ""
 
 
 class RunningMission:
@@ -59,6 +86,8 @@ class RunningMission:
         self._moving_since: float | None = None
         self._begun = time.monotonic()
         self.simulated = 0.0  # s
+        self.next_mission: str | None = None
+        """The mission that somebody has asked for, to take the place of this one."""
 
     def start(self, services: list[str]) -> None:
         """Starts the router first, then all others; the conductor starts time when all are there."""
@@ -69,6 +98,7 @@ class RunningMission:
         for name in ("conductor", "recorder"):
             told = topics.SYSTEM_EVENTS.by(name)
             bus.subscribe(told.at("sys"), told.qos, guarded(told, lambda event, _: self._say(event.text), refuse), depth=16)
+        bus.serve(topics.LAUNCH.at("sys"), self._on_launch)
         waits, signs = Waits(self._say, services), topics.HEALTH.by("*")
         bus.subscribe(signs.at("sys"), signs.qos, guarded(signs, lambda health, _: waits.hear(health), refuse), depth=64)
         self._start("conductor", "service", "conductor", "--mission", mission, "--rate", str(self._wanted.rate))
@@ -80,6 +110,18 @@ class RunningMission:
     def _start(self, name: str, *arguments: str) -> None:
         self.launcher.start(name, [*arguments], RotatingLog(self._folder / f"{name}.log").write)
 
+    def _on_launch(self, query: Query) -> None:
+        """Only missions of the project are started, by their names; one that cannot run leaves this one as it is."""
+        try:
+            wanted = decode(query.key, query.payload, LaunchRequest).mission
+            fault = launch_fault(wanted)
+        except Malformed as error:
+            wanted, fault = "", str(error)
+        if not fault:
+            self._say(f"mission {wanted} is asked for")
+            self.next_mission = wanted
+        query.answer(Reply(accepted=not fault, reason=fault).SerializeToString(deterministic=True), 0)
+
     def _on_clock(self, clock: Clock, sample: Sample) -> None:
         self.simulated = clock.t_ns / 1e9
         if clock.tick and self._moving_since is None:
@@ -88,7 +130,7 @@ class RunningMission:
 
     def watch(self, stop: Flag) -> None:
         """Supervises until ``stop``; restarts what dies."""
-        while not stop.wait(LOOK) and not self._over() and not self._cannot_begin():
+        while not stop.wait(LOOK) and self.next_mission is None and not self._over() and not self._cannot_begin():
             self.launcher.look()
 
     def _over(self) -> bool:

@@ -55,7 +55,18 @@ from schemas.v1.octree_pb2 import OctreeMap, OctreeSaveRequest
 from schemas.v1.rally_pb2 import RallyPoints, RallyRequest
 from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
 from schemas.v1.simulator_pb2 import RemoveRequest, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
-from schemas.v1.system_pb2 import Event, Health, Param, ParamReply, ParamRequest, ParamValues, Process, Processes, Refusal
+from schemas.v1.system_pb2 import (
+    Event,
+    Health,
+    LaunchRequest,
+    Param,
+    ParamReply,
+    ParamRequest,
+    ParamValues,
+    Process,
+    Processes,
+    Refusal,
+)
 from schemas.v1.targets_pb2 import EstimateQuality, Targets
 from schemas.v1.time_pb2 import Clock, ClockRequest, Done
 from schemas.v1.vehicle_command_pb2 import (
@@ -124,6 +135,7 @@ __all__ = [
     "KeyValuePair",
     "Kind",
     "LaserScan",
+    "LaunchRequest",
     "LineSetpoint",
     "Link",
     "MapFix",

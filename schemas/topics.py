@@ -192,6 +192,7 @@ LINK = Topic(f"{_V}/state/link", m.Link, 2, _Q.STATE, "ground stations that are 
 
 # requests
 CLOCK_REQUEST = Request(f"{_S}/srv/clock", m.ClockRequest, m.Reply, "rate, pause, resume, single step, reset")
+LAUNCH = Request(f"{_S}/srv/launch", m.LaunchRequest, m.Reply, "end the mission that runs, and start another one")
 SPAWN = Request(f"{_S}/srv/sim/spawn", m.SpawnRequest, m.Reply, "put a shape or a vehicle into the ground simulation")
 REMOVE = Request(f"{_S}/srv/sim/remove", m.RemoveRequest, m.Reply, "take out what was put in")
 SET_POSE = Request(f"{_S}/srv/sim/pose", m.SetPoseRequest, m.Reply, "put a ground vehicle or an object elsewhere, at rest")

@@ -170,3 +170,11 @@ class Processes(_message.Message):
     timestamp: _timestamp_pb2.Timestamp
     processes: _containers.RepeatedCompositeFieldContainer[Process]
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., processes: _Optional[_Iterable[_Union[Process, _Mapping]]] = ...) -> None: ...
+
+class LaunchRequest(_message.Message):
+    __slots__ = ("mission", "source")
+    MISSION_FIELD_NUMBER: _ClassVar[int]
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    mission: str
+    source: str
+    def __init__(self, mission: _Optional[str] = ..., source: _Optional[str] = ...) -> None: ...

@@ -196,6 +196,27 @@ class GimbalMode(Asked):
     mode: Name
 
 
+@dataclass(frozen=True)
+class RunClock(Asked):
+    """Pause, resume, step or reset the simulation; a reset wants a second click."""
+
+    what: Literal["pause", "resume", "step", "reset"]
+
+
+@dataclass(frozen=True)
+class SetRate(Asked):
+    """Simulation seconds per second; 0 = as fast as it goes."""
+
+    rate: Annotated[float, msgspec.Meta(ge=0.0, le=100.0)]
+
+
+@dataclass(frozen=True)
+class LaunchMission(Asked):
+    """End the mission that runs and start this one; wants a second click."""
+
+    mission: Name
+
+
 def ground_point(origin: Sequence[float], direction: Sequence[float]) -> tuple[float, float] | None:
     """Where a ray (origin (3,) [m], direction (3,), world) meets the ground z = 0: (x, y) [m, world]; None if it never does."""
     o, d = np.asarray(origin, dtype=float), np.asarray(direction, dtype=float)

@@ -8,11 +8,13 @@ import numpy as np
 from google.protobuf.message import Message
 
 from schemas.messages import (
+    ClockRequest,
     DriveCommand,
     Event,
     GimbalCommand,
     GoalRequest,
     HomeCommand,
+    LaunchRequest,
     MissionRequest,
     Mode,
     ModeRequest,
@@ -28,11 +30,14 @@ from services.gcs.actions import (
     ClickGround,
     Command,
     GimbalMode,
+    LaunchMission,
     LeaveWheel,
     Point,
     ReleaseStop,
     RequestControl,
     Rescale,
+    RunClock,
+    SetRate,
     Steer,
     StopAll,
     TakeWheel,
@@ -56,6 +61,12 @@ from uvf.runtime.messages.convert import stamp
 from uvf.runtime.state.stop_all import StopVoice
 
 REACH = 50.0  # m, how far outside the floor a goal of a ground vehicle may lie
+CLOCK_ACTIONS = {
+    "pause": ClockRequest.PAUSE,
+    "resume": ClockRequest.RESUME,
+    "step": ClockRequest.STEP,
+    "reset": ClockRequest.RESET,
+}
 OBEYING_PLANNER = (Mode.MODE_MISSION, Mode.MODE_RETURN)
 
 
@@ -64,8 +75,8 @@ class Outbox:
     """The messages that a step sends, by the service's declared names."""
 
     stop: list[StopCommand] = field(default_factory=list)
-    calls: dict[str, dict[str, list[Message]]] = field(default_factory=dict)
-    """Requests by the name of the call, then by vehicle."""
+    calls: dict[str, Any] = field(default_factory=dict)
+    """Requests by the name of the call, then by vehicle; those to the system as a list."""
     drive: dict[str, Message] = field(default_factory=dict)
     gimbal: dict[str, Message] = field(default_factory=dict)
 
@@ -133,6 +144,8 @@ class Commander:
                 self.by_hand.rescale(t, page, key)
             case AimGimbal() | GimbalMode():
                 self._aim(t, session, action, out)
+            case RunClock() | SetRate() | LaunchMission():
+                self._run(t, session, action, out)
             case OfPlan():
                 self._plan(t, session, action, out)
 
@@ -196,6 +209,25 @@ class Commander:
             case GimbalMode(_, _, mode) if mode in GIMBAL_MODES:
                 aim.mode = GIMBAL_MODES[mode]
         vehicle.aim = out.gimbal[vehicle.name] = aim
+
+    def _run(self, t: float, session: BrowserSession, action: RunClock | SetRate | LaunchMission, out: Outbox) -> None:
+        """What concerns the simulation as a whole: anybody may ask for it, and what loses the run wants a second click."""
+        request: Message
+        match action:
+            case RunClock(_, what):
+                name, request = "clock_request", ClockRequest(action=CLOCK_ACTIONS[what])
+            case SetRate(_, rate):
+                name, request = "clock_request", ClockRequest(action=ClockRequest.SET_RATE, rate=rate)
+            case LaunchMission(_, mission):
+                name, request = "launch", LaunchRequest(mission=mission, source=SOURCE)
+        key = f"{name} {getattr(action, 'what', getattr(action, 'mission', ''))}"
+        loses = isinstance(action, LaunchMission) or (isinstance(action, RunClock) and action.what == "reset")
+        if loses and not session.confirms("", key, t):
+            session.to_confirm = ("", key, t)
+            return
+        session.to_confirm = None
+        self._orders.open(t, None, request)
+        out.calls.setdefault(name, []).append(request)
 
     def _plan(self, t: float, session: BrowserSession, action: OfPlan, out: Outbox) -> None:
         """Edits, uploads and item jumps of a mission; all of them are the controlling operator's."""
@@ -344,6 +376,8 @@ class Commander:
         """Takes the answers to earlier requests at ``t`` [s, wall]."""
         for answer in answers:
             vehicle = self._model.vehicles.get(answer.vehicle)
+            if isinstance(answer.request, ClockRequest | LaunchRequest):
+                self._orders.settle(t, None, answer)
             if vehicle is None:
                 continue
             if isinstance(answer.request, PreviewRequest):

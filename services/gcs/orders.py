@@ -19,19 +19,25 @@ class OrderBook:
     def __init__(self, model: Model) -> None:
         self._model = model
 
-    def open(self, t: float, vehicle: VehicleModel, request: Message) -> bool:
-        """Notes an order at ``t`` [s, wall]; refuses it at once when nothing has been heard of the vehicle for long."""
+    def open(self, t: float, vehicle: VehicleModel | None, request: Message) -> bool:
+        """Notes an order at ``t`` [s, wall]; refuses it at once when nothing has been heard of the vehicle for long.
+
+        vehicle: None for the system, here and below.
+        """
+        if vehicle is None:
+            self._model.order = Order(describe(request), t)
+            return True
         if vehicle.heard is None or t - vehicle.heard > LOST_AFTER:
             self.refuse(t, vehicle, describe(request), "no link to the vehicle")
             return False
         vehicle.order = Order(describe(request), t)
         return True
 
-    def refuse(self, t: float, vehicle: VehicleModel, text: str, reason: str) -> None:
+    def refuse(self, t: float, vehicle: VehicleModel | None, text: str, reason: str) -> None:
         """Ends an order at ``t`` [s, wall] that is not carried out."""
         self._end(t, vehicle, Order(text, t, "refused", reason or "no reason given"))
 
-    def settle(self, t: float, vehicle: VehicleModel, answer: Answer[Any, Any]) -> bool:
+    def settle(self, t: float, vehicle: VehicleModel | None, answer: Answer[Any, Any]) -> bool:
         """Takes a vehicle's answer at ``t`` [s, wall]; returns whether it has accepted."""
         accepted = answer.reply is not None and answer.reply.accepted
         if accepted:
@@ -40,16 +46,20 @@ class OrderBook:
             self.refuse(t, vehicle, describe(answer.request), answer.reason if answer.reply is None else answer.reply.reason)
         return accepted
 
-    def _end(self, t: float, vehicle: VehicleModel, order: Order) -> None:
-        vehicle.order = order
+    def _end(self, t: float, vehicle: VehicleModel | None, order: Order) -> None:
+        (self._model if vehicle is None else vehicle).order = order
         good = order.state == "accepted"
         outcome = order.state if good else f"{order.state}: {order.reason}"
-        line = self._model.note(vehicle.name, f"{order.text}: {outcome}", Event.INFO if good else Event.WARNING, of_operator=True)
+        who, severity = vehicle.name if vehicle is not None else "", Event.INFO if good else Event.WARNING
+        line = self._model.note(who, f"{order.text}: {outcome}", severity, of_operator=True)
+            vehicle.name if vehicle is not None else "", f"{order.text}: {outcome}", Event.INFO if good else Event.WARNING, of_operator=True
+        )
         self._model.log.tell(t, line, good)
 
     def expire(self, t: float) -> None:
         """Shows orders that were not answered by ``t`` [s, wall] as refused."""
-        for vehicle in self._model.vehicles.values():
-            order = vehicle.order
+        waiting: list[tuple[VehicleModel | None, Order | None]] = [(None, self._model.order)]
+        waiting += [(vehicle, vehicle.order) for vehicle in self._model.vehicles.values()]
+        for vehicle, order in waiting:
             if order is not None and order.state == "sent" and t - order.at > ANSWER_WITHIN:
                 self.refuse(t, vehicle, order.text, "no answer")

@@ -10,6 +10,7 @@ from schemas.messages import (
     ArmRequest,
     CancelRequest,
     Clock,
+    ClockRequest,
     CompressedImage,
     DriveCommand,
     Event,
@@ -22,6 +23,7 @@ from schemas.messages import (
     Health,
     JointStates,
     LaserScan,
+    LaunchRequest,
     Mission,
     MissionProgress,
     MissionRequest,
@@ -121,6 +123,8 @@ class GroundStation(Service):
         preview: list[Answer[PreviewRequest, PreviewReply]] = answers(topics.PREVIEW)
         set_mission: list[Answer[MissionRequest, Reply]] = answers(topics.SET_MISSION)
         current: list[Answer[SetCurrentRequest, Reply]] = answers(topics.SET_CURRENT)
+        clock_request: list[Answer[ClockRequest, Reply]] = answers(topics.CLOCK_REQUEST)
+        launch: list[Answer[LaunchRequest, Reply]] = answers(topics.LAUNCH)
 
     class Outputs(Writes):
         """Commands and requests to the vehicles."""
@@ -136,6 +140,8 @@ class GroundStation(Service):
         preview: list[PreviewRequest] = call(topics.PREVIEW)
         set_mission: list[MissionRequest] = call(topics.SET_MISSION)
         current: list[SetCurrentRequest] = call(topics.SET_CURRENT)
+        clock_request: list[ClockRequest] = call(topics.CLOCK_REQUEST)
+        launch: list[LaunchRequest] = call(topics.LAUNCH)
 
     def __init__(self, site: Scenario, page: Page) -> None:
         self._page = page

@@ -22,7 +22,7 @@ from services.gcs.state.external_vehicles import FORGOTTEN_AFTER, ExternalVehicl
 from services.gcs.state.process_book import ProcessBook
 from services.gcs.state.refusals import PageRefusals
 from services.gcs.state.session import SHOWN_AT_FIRST, BrowserSession
-from services.gcs.state.vehicle_model import SIGNS_OF_LIFE, VehicleModel, scan_in_world, track_of
+from services.gcs.state.vehicle_model import SIGNS_OF_LIFE, Order, VehicleModel, scan_in_world, track_of
 from uvf.models.mission.file import StartPose, Vehicle
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.file import load_vehicle
@@ -56,6 +56,8 @@ class Model:
         self.wall = 0.0
         """Time of this step [s, wall]."""
         self.control = ControlBook()
+        self.order: Order | None = None
+        """The last request to the system, and its outcome."""
         self.clock: Clock | None = None
         self.clock_at: float | None = None
         self.stop = StopStatus()

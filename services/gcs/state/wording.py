@@ -8,8 +8,10 @@ from google.protobuf.message import Message
 from schemas.messages import (
     ArmRequest,
     CancelRequest,
+    ClockRequest,
     GimbalCommand,
     GoalRequest,
+    LaunchRequest,
     MissionRequest,
     Mode,
     ModeRequest,
@@ -33,6 +35,11 @@ def describe(request: Message) -> str:
             return "arm" if request.arm else "disarm"
         case CancelRequest():
             return "cancel the goal"
+        case ClockRequest():
+            action = enum_name(ClockRequest.Action, request.action)
+            return f"simulation rate {request.rate:g}" if request.action == ClockRequest.SET_RATE else f"{action} the simulation"
+        case LaunchRequest():
+            return f"start mission {request.mission}"
         case MissionRequest():
             return f"mission of {len(request.mission.items)} items"
         case SetCurrentRequest():

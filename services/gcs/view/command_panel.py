@@ -20,7 +20,7 @@ def command_panel(model: Model, v: VehicleModel, session: BrowserSession, t: flo
         _control(model, v, session, t),
         buttons,
         _reason(shown),
-        order_line(v),
+        order_line(v.order),
         progress_line(v),
     )
 

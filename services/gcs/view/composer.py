@@ -11,7 +11,7 @@ from services.gcs.state.pointing import Pointed
 from services.gcs.state.session import ROOTS, VIEWS, BrowserSession, hidden_roots
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
-from services.gcs.view import camera_panel, command_panel, facts, fleet, menus, plan, records, status, teleoperation
+from services.gcs.view import camera_panel, command_panel, facts, fleet, menus, plan, records, run_panel, status, teleoperation
 from services.gcs.view.cameras import ASPECT, cameras
 from services.gcs.view.controls import check_box, choice
 from services.gcs.view.drawing import CameraView, Colour, Node, PagePanel, Picture, Polyline
@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 HELP = Path(__file__).with_name("help.html")
 COLOURS: Mapping[str, Colour] = {"/own/way": (150, 160, 175), "/own/drawn": (140, 150, 168), "/own/flown": (232, 74, 214)}
-FAST = ("plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
+FAST = ("run", "plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
 EVERY = 2
 """Steps between two drawings of these, which tell at once; of the rest one is drawn with each step."""
 SLOW = ("fleet", "cameras", "facts", "overview", "log", "processes", "notices", "layers", "views", "hint", "help")
@@ -31,6 +31,7 @@ OF_TAB: Mapping[str, tuple[str, ...]] = {
     "fly": ("instrument", "picture", "cameras", "facts"),
     "drive": ("instrument", "picture", "wheel", "cameras", "facts"),
     "plan": ("plan", "handles"),
+    "run": ("run",),
     "graph": ("processes",),
     "log": ("log",),
     "help": ("help",),
@@ -97,6 +98,7 @@ class Composer:
         }
         in_tabs = {
             "processes": self._once("processes", None, lambda: records.processes(model, t)),
+            "run": lambda: run_panel.run_panel(model, session, t),
             "log": self._once("log", None, lambda: records.event_log(model.log)),
             "help": lambda: trusted(HELP.read_text(encoding="utf-8")),
         }

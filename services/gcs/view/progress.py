@@ -1,7 +1,7 @@
 """What became of the last order to a vehicle, and how far its job is."""
 
 from schemas.messages import MissionProgress, Mode, NavStatus
-from services.gcs.state.vehicle_model import VehicleModel
+from services.gcs.state.vehicle_model import Order, VehicleModel
 from services.gcs.view.markup import Html, html
 from uvf.runtime.messages.enum_names import enum_name
 
@@ -42,10 +42,10 @@ def _progress(text: str, share: float | None) -> Html:
     return html("<div class='g-progress'>{}{}</div>", text, bar)
 
 
-def order_line(v: VehicleModel) -> Html:
+def order_line(order: Order | None) -> Html:
     """The last order: sent, accepted or refused and why."""
-    if v.order is None:
+    if order is None:
         return html("<div class='g-order g-idle'>Nothing asked yet</div>")
-    sign, style = {"sent": ("…", "warn"), "accepted": ("✓", "good"), "refused": ("✖", "bad")}[v.order.state]
-    reason = f": {v.order.reason}" if v.order.reason else ""
-    return html("<div class='g-order g-{}' role='status'>{} {} – {}{}</div>", style, sign, v.order.text, v.order.state, reason)
+    sign, style = {"sent": ("…", "warn"), "accepted": ("✓", "good"), "refused": ("✖", "bad")}[order.state]
+    reason = f": {order.reason}" if order.reason else ""
+    return html("<div class='g-order g-{}' role='status'>{} {} – {}{}</div>", style, sign, order.text, order.state, reason)

@@ -9,6 +9,7 @@ const TABS = {
   drive: ['Drive', 'instrument', 'wheel', 'cameras', 'picture', 'facts'],
   graph: ['Graph', 'processes'],
   log: ['Log', 'log'],
+  run: ['Run', 'run'],
   help: ['Help', 'help'],
 };
 const BY_KIND = { fixed_wing: 'fly', ground: 'drive' };
