@@ -52,8 +52,6 @@ class OrderBook:
         outcome = order.state if good else f"{order.state}: {order.reason}"
         who, severity = vehicle.name if vehicle is not None else "", Event.INFO if good else Event.WARNING
         line = self._model.note(who, f"{order.text}: {outcome}", severity, of_operator=True)
-            vehicle.name if vehicle is not None else "", f"{order.text}: {outcome}", Event.INFO if good else Event.WARNING, of_operator=True
-        )
         self._model.log.tell(t, line, good)
 
     def expire(self, t: float) -> None:
