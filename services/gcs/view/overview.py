@@ -36,7 +36,7 @@ class Overview:
         moving = joined(self._vehicle(v, v is chosen) for v in self._model.vehicles.values())
         return html(
             "<svg id='gcs-overview' role='img' aria-label='map of all vehicles, north up' viewBox='0 0 {:.0f} {:.0f}' "
-            "width='100%' font-family='ui-sans-serif,system-ui,sans-serif' font-size='11' fill='#cfd8e6'>{}{}</svg>",
+            "width='100%' font-family='ui-sans-serif,system-ui,sans-serif' font-size='11'>{}{}</svg>",
             WIDTH,
             HEIGHT,
             self._still,
@@ -52,9 +52,9 @@ class Overview:
         x_min, y_min, x_max, y_max = self._model.site.world.floor
         (left, bottom), (right, top) = self._at(np.array(((x_min, y_min), (x_max, y_max))))
         return html(
-            "<rect width='{}' height='{}' rx='8' fill='#0d1522'/>"
-            "<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='#5b6b85' stroke='#a9b8cf'/>"
-            "<path d='M{} 26v-14m-4 5l4 -6l4 6' fill='none' stroke='#cfd8e6' stroke-width='1.4'/>"
+            "<rect width='{}' height='{}' class='o-back'/>"
+            "<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' class='o-floor'/>"
+            "<path d='M{} 26v-14m-4 5l4 -6l4 6' class='o-line'/>"
             "<text x='{}' y='38' text-anchor='middle' font-size='10'>N</text>",
             WIDTH,
             HEIGHT,
@@ -69,11 +69,11 @@ class Overview:
     def _scale_bar(self) -> Html:
         length = max((s for s in STEPS if s * self._scale <= 80), default=STEPS[0])
         px = length * self._scale
-        bar = html("<path d='M12 {}v4h{:.1f}v-4' fill='none' stroke='#cfd8e6'/>", HEIGHT - 14, px)
+        bar = html("<path d='M12 {}v4h{:.1f}v-4' class='o-line'/>", HEIGHT - 14, px)
         return html("{}<text x='{:.1f}' y='{}'>{} m</text>", bar, 18 + px, HEIGHT - 9, length)
 
     def _vehicle(self, v: VehicleModel, is_chosen: bool) -> Html:
-        route = _path(self._at(mission_points(v)), "#e84ad6", html("stroke-dasharray='4 3' opacity='.8'")) if v.flies else html("")
+        route = _path(self._at(mission_points(v)), "var(--route)", html("stroke-dasharray='4 3' opacity='.8'")) if v.flies else html("")
         tracks = [points for _, points in v.track.closed] + [v.track.tail]
         gone = joined(_path(self._at(_thinned(p)), v.colour, html("opacity='.75'")) for p in tracks if len(p) > 1 and v.flies)
         if v.place is None:
@@ -82,7 +82,7 @@ class Overview:
         heading = 90 - degrees(to_euler(v.place.wxyz)[2])
         size = 1.25 if is_chosen else 1.0
         where = f"translate({x:.1f} {y:.1f}) rotate({heading:.0f}) scale({size})"
-        icon = html("<path transform='{}' d='M0 -8L6 7L0 4L-6 7Z' fill='{}' stroke='#fff' stroke-width='.8'/>", where, v.colour)
+        icon = html("<path transform='{}' d='M0 -8L6 7L0 4L-6 7Z' fill='{}' stroke='var(--panel)' stroke-width='.8'/>", where, v.colour)
         return joined((route, gone, icon, _name(v.name, x, y)))
 
 

@@ -127,7 +127,7 @@ def _adding(v: VehicleModel) -> Html:
     keys = joined(
         button(f"+ {label}", "plan-add", v.name, kind, round(float(here[0]), 1), round(float(here[1]), 1)) for kind, label in kinds.items()
     )
-    return html("<div class='g-row g-gap'>{}</div>", keys)
+    return html("<div class='g-two g-gap'>{}</div>", keys)
 
 
 def _remarks(outlook: PlanOutlook) -> Html:

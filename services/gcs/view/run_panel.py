@@ -39,13 +39,13 @@ def _state(model: Model) -> str:
 def _clock(model: Model, session: BrowserSession, t: float) -> Html:
     clock = model.clock
     paused = clock is not None and clock.state == Clock.PAUSED
-    go = button("▶ Resume", "clock", "resume", style="g-btn g-main") if paused else button("⏸ Pause", "clock", "pause")
+    go = button("▶ Resume", "clock", "resume", style="g-btn g-main") if paused else button("❚❚ Pause", "clock", "pause")
     off = html("") if paused else html("aria-disabled='true'")
     step = button("One step", "clock", "step", more=off, hint="One tick of the clock" if paused else "Pause it first")
     sure = session.confirms("", "clock_request reset", t)
     reset = button("Confirm: start afresh" if sure else "↺ Reset", "clock", "reset", style="g-btn g-sure" if sure else "g-btn")
     wanted = clock.rate_wanted if clock is not None else 1.0
-    rates = joined(button(f"× {rate:g}" if rate else "fastest", "rate", rate, style="", pressed=rate == wanted) for rate in RATES)
+    rates = joined(button(f"×{rate:g}" if rate else "fastest", "rate", rate, style="", pressed=rate == wanted) for rate in RATES)
     group = html("<div class='g-pressed-group g-gap' role='group' aria-label='Rate'>{}</div>", rates)
     return html("<div class='g-row'>{}{}{}</div>{}", go, step, reset, group)
 

@@ -29,7 +29,7 @@ def answer(station, request, query):
 
 
 def test_the_clock_is_paused_resumed_and_stepped(station):
-    station.push("⏸ Pause")
+    station.push("❚❚ Pause")
     station.script.put("sys", topics.CLOCK, Clock(t_ns=10**9, state=Clock.PAUSED, tick=99), 1.0)
     station.run(0.4, silent=True)
     assert "paused at 00:00:01" in station.page.now.html["run"]
@@ -40,7 +40,7 @@ def test_the_clock_is_paused_resumed_and_stepped(station):
 
 
 def test_the_rate_is_set(station):
-    station.push("× 2")
+    station.push("×2")
     assert [(m.action, m.rate) for m in station.heard] == [(ClockRequest.SET_RATE, 2.0)]
     station.press(SetRate(ME, 0.0))
     assert station.heard[-1].rate == 0.0
