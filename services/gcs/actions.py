@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 
 Name = Annotated[str, msgspec.Meta(max_length=64)]
+ServiceKey = Annotated[str, msgspec.Meta(max_length=96)]
 Share = Annotated[float, msgspec.Meta(ge=-1.0, le=1.0)]
 Metres = Annotated[float, msgspec.Meta(ge=-1e6, le=1e6)]
 Angle = Annotated[float, msgspec.Meta(ge=-7.0, le=7.0)]
@@ -102,6 +103,35 @@ class ShowCamera(Asked):
 @dataclass(frozen=True)
 class Looking(Asked):
     """The page reports that the camera picture is visible."""
+
+
+@dataclass(frozen=True)
+class FilterTopics(Asked):
+    """List topics whose key, type or services contain this text."""
+
+    text: Name
+
+
+@dataclass(frozen=True)
+class ScopeTopics(Asked):
+    """List the topics of the vehicle on show, all, or those that something is wrong with."""
+
+    scope: Literal["vehicle", "all", "problems"]
+
+
+@dataclass(frozen=True)
+class ShowService(Asked):
+    """List the topics of a service (``owner/name``), or of the bundle that leads ``to`` another one; "" for all."""
+
+    node: ServiceKey
+    to: ServiceKey
+
+
+@dataclass(frozen=True)
+class ShowTopic(Asked):
+    """Show the newest message of a key; "" for none."""
+
+    key: Annotated[str, msgspec.Meta(max_length=200)]
 
 
 @dataclass(frozen=True)

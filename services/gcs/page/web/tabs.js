@@ -6,7 +6,7 @@ import { fill, on, say } from './link.js';
 const TABS = {
   fly: ['Fly', 'instrument', 'cameras', 'picture', 'facts'],
   drive: ['Drive', 'instrument', 'wheel', 'cameras', 'picture', 'facts'],
-  graph: ['Graph', 'processes'],
+  graph: ['Graph', 'graph', 'wiring', 'topics', 'processes'],
   log: ['Log', 'log'],
   help: ['Help', 'help'],
 };
