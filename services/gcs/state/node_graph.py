@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from schemas import topics as table
 from schemas.messages import Clock, Process
 from schemas.topics import PREFIX, SYSTEM
 from services.gcs.state.endpoints import EndpointIndex, LivingService, ServiceBook
@@ -12,6 +13,7 @@ from services.gcs.state.traffic import BusTraffic, KeyTraffic
 from uvf.runtime.messages.topic_lookup import is_of_table, topic_of
 
 CLOCK_OLD_AFTER = 2.0  # s, wall
+HEALTH = table.HEALTH.by("").at(SYSTEM)
 PACE_AT_LEAST = 0.02
 MOST_TOPICS = 1500
 
@@ -92,10 +94,16 @@ def graph_of(book: ServiceBook, traffic: BusTraffic, processes: ProcessBook, t: 
     keys = sorted({*traffic.keys, *(key for key in index.named if key.startswith(f"{PREFIX}/"))})[:MOST_TOPICS]
     topics = [_topic(_evidence(key, index, book, traffic.keys.get(key), t, listened, pace)) for key in keys]
     waiting = {name: vitals.report.missing for name, vitals in processes.vitals.items() if not vitals.silence(t)}
-    services = [_service(one, processes.told, waiting, t) for one in book.services.values()]
+    told = {boot: processes.told[name] for boot, name in _processes(traffic).items() if name in processes.told}
+    services = [_service(one, told.get(one.boot), waiting, t) for one in book.services.values()]
     return NodeGraph(
         tuple(sorted(topics, key=lambda one: (-one.grade, one.key))), tuple(sorted(services, key=lambda one: (-one.grade, one.name)))
     )
+
+
+def _processes(traffic: BusTraffic) -> dict[int, str]:
+    """Which process has which name: each says its name by the key of its sign of life."""
+    return {boot: key.removeprefix(HEALTH) for key, heard in traffic.keys.items() if key.startswith(HEALTH) for boot in heard.senders}
 
 
 def _evidence(
@@ -137,9 +145,8 @@ def _topic(e: TopicEvidence) -> TopicState:
     return TopicState(e.key, type_name, e.topic.hz if e.topic else 0.0, rate, e.age, size, writers, readers, grade, why)
 
 
-def _service(one: LivingService, told: Mapping[str, Process], waiting: Mapping[str, Sequence[str]], t: float) -> ServiceState:
+def _service(one: LivingService, process: Process | None, waiting: Mapping[str, Sequence[str]], t: float) -> ServiceState:
     if one.gone_at is not None:
-        process = next((p for name, p in told.items() if one.kind == name or one.kind.startswith(f"{name}_")), None)
         if process is not None and process.state == Process.ENDED:
             return ServiceState(one.name, Grade.QUIET, f"has ended, {t - one.gone_at:.0f} s ago")
         reason = f" ({process.reason[:120]})" if process is not None and process.reason else ""

@@ -12,6 +12,8 @@ WARM_UP = 5.0  # s, wall: listening for a shorter time tells of nothing that is 
 OLD_AT_LEAST = 2.0  # s, wall: a shorter silence may be the machine's
 SLOW = 0.5  # share of the nominal rate
 BARELY = 1.0  # Hz: what is due more seldom than that is not counted within OVER
+AT_WILL = (Qos.CONTROL, Qos.LOCKSTEP)
+"""Sent when there is something to command, or when the clock is to wait: silence means nothing unless somebody needs it."""
 WRONG_WITHIN = 10.0  # s, wall
 
 
@@ -125,7 +127,7 @@ def _absence(e: TopicEvidence) -> tuple[Grade, str] | None:
         return Grade.RED, f"{since}, and {names(e.needed_by)} waits for it: {mend}"
     if not ages or not e.writers:
         return None
-    if e.age is None or (e.topic is not None and e.topic.qos is Qos.CONTROL):
+    if e.age is None or (e.topic is not None and e.topic.qos in AT_WILL):
         return Grade.QUIET, f"{since}, though {names(e.writers)} may publish it"
     return Grade.AMBER, f"{since}, due every {1.0 / e.nominal:.2g} s: see what {names(e.writers)} does"
 
@@ -133,7 +135,7 @@ def _absence(e: TopicEvidence) -> tuple[Grade, str] | None:
 def _slowness(e: TopicEvidence) -> tuple[Grade, str] | None:
     if e.traffic is None or e.listened < WARM_UP or e.t - e.traffic.since < OVER or e.nominal < BARELY:
         return None
-    if e.topic is None or e.topic.qos in (Qos.LOCKSTEP, Qos.LATCHED, Qos.EVENT) or e.rate >= SLOW * e.nominal:
+    if e.topic is None or (e.topic.qos in AT_WILL and not e.needed_by) or e.rate >= SLOW * e.nominal:
         return None
     who = names(e.writers) or "its writer"
     return Grade.AMBER, f"slow: {e.rate:.1f} of {e.nominal:.3g} messages a second; {who} does not keep up: see its CPU % and late % below"

@@ -179,12 +179,12 @@ def test_one_look_that_finds_nothing_makes_nobody_vanish(bus):
 
 
 def test_why_its_process_failed_stands_beside_a_service_that_is_gone_and_one_that_has_ended_is_no_problem(bus):
-    bus.run(6.0, LIDAR, LOCALIZED)
+    bus.run(6.0, LIDAR, LOCALIZED, (topics.HEALTH.by("localizer").at("sys"), Health, 2, 2))
     bus.tokens = [*SIM, *PLANNER]
-    bus.processes.hear(bus.t, [Processes(processes=[Process(name="slam", state=Process.FAILED, reason="exit code 3")])])
+    bus.processes.hear(bus.t, [Processes(processes=[Process(name="localizer", state=Process.FAILED, reason="exit code 3")])])
     bus.run(2.0, LIDAR, LOCALIZED)
     assert "(exit code 3)" in bus.service("burger/slam").why
-    bus.processes.hear(bus.t, [Processes(processes=[Process(name="slam", state=Process.ENDED)])])
+    bus.processes.hear(bus.t, [Processes(processes=[Process(name="localizer", state=Process.ENDED)])])
     assert bus.service("burger/slam").grade is Grade.QUIET
 
 
