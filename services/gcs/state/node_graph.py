@@ -36,6 +36,8 @@ class TopicState:
     readers: tuple[str, ...]
     grade: Grade
     why: str
+    gone: str = ""
+    """The writer whose end explains its silence."""
 
     @property
     def owner(self) -> str:
@@ -66,8 +68,10 @@ class NodeGraph:
 
     @property
     def problems(self) -> list[ServiceState | TopicState]:
-        """All that is red or amber, the worst first."""
-        everything: list[ServiceState | TopicState] = [*self.services, *self.topics]
+        """All that is red or amber, the worst first; topics that are silent because a service is gone are that service's problem."""
+        explained = {service.name for service in self.services if service.grade is Grade.RED}
+        topics = [topic for topic in self.topics if topic.gone not in explained]
+        everything: list[ServiceState | TopicState] = [*self.services, *topics]
         return sorted((one for one in everything if one.grade >= Grade.AMBER), key=lambda one: -one.grade)
 
     def bundles(self, topics: Iterable[TopicState]) -> dict[tuple[str, str], list[TopicState]]:
@@ -142,7 +146,8 @@ def _topic(e: TopicEvidence) -> TopicState:
     declared = e.topic.message.DESCRIPTOR.full_name if e.topic is not None else ""
     type_name = e.traffic.type_name if e.traffic is not None and e.traffic.type_name else declared
     writers, readers = (tuple(sorted({s.name for s in some})) for some in ([*e.writers, *(() if e.writers else e.gone)], e.readers))
-    return TopicState(e.key, type_name, e.topic.hz if e.topic else 0.0, rate, e.age, size, writers, readers, grade, why)
+    gone = e.gone[0].name if e.gone and not e.writers and e.is_silent else ""
+    return TopicState(e.key, type_name, e.topic.hz if e.topic else 0.0, rate, e.age, size, writers, readers, grade, why, gone)
 
 
 def _service(one: LivingService, process: Process | None, waiting: Mapping[str, Sequence[str]], t: float) -> ServiceState:

@@ -10,6 +10,7 @@ from services.gcs.state.traffic import OVER, KeyTraffic
 
 WARM_UP = 5.0  # s, wall: listening for a shorter time tells of nothing that is missing
 OLD_AT_LEAST = 2.0  # s, wall: a shorter silence may be the machine's
+PAUSE, PAUSE_PERIODS = 0.5, 3.0  # s, periods: after such a pause nobody is slow, but silent
 SLOW = 0.5  # share of the nominal rate
 BARELY = 1.0  # Hz: what is due more seldom than that is not counted within OVER
 AT_WILL = (Qos.CONTROL, Qos.LOCKSTEP)
@@ -137,6 +138,8 @@ def _slowness(e: TopicEvidence) -> tuple[Grade, str] | None:
         return None
     if e.topic is None or (e.topic.qos in AT_WILL and not e.needed_by) or e.rate >= SLOW * e.nominal:
         return None
+    if e.age is not None and e.age > max(PAUSE_PERIODS / e.nominal, PAUSE):
+        return Grade.QUIET, f"silent for {e.age:.1f} s"
     who = names(e.writers) or "its writer"
     return Grade.AMBER, f"slow: {e.rate:.1f} of {e.nominal:.3g} messages a second; {who} does not keep up: see its CPU % and late % below"
 

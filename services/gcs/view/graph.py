@@ -12,7 +12,7 @@ from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
 from services.gcs.view.message_text import message_text
 
-PROBLEMS, ROWS, WHO = 12, 120, 3
+PROBLEMS, ROWS, WHO = 6, 120, 3
 STYLES = {Grade.FINE: "good", Grade.QUIET: "idle", Grade.AMBER: "warn", Grade.RED: "bad"}
 SIGNS = {Grade.FINE: "●", Grade.QUIET: "○", Grade.AMBER: "⚠", Grade.RED: "✖"}
 WORDS = {Grade.FINE: "fine", Grade.QUIET: "quiet", Grade.AMBER: "warning", Grade.RED: "bad"}
@@ -26,24 +26,28 @@ def summary(graph: NodeGraph, listened: bool) -> Html:
     worst = STYLES[problems[0].grade] if problems else "good"
     what = f"{len(problems)} problem{'s' if len(problems) != 1 else ''}" if problems else "no problem"
     line = html("<b>{} topics, {} services: <span class='g-{}'>{}</span></b>", len(graph.topics), len(graph.services), worst, what)
-    rows = joined(_problem(one) for one in problems[:PROBLEMS])
+    rows = joined(_problem(one, graph) for one in problems[:PROBLEMS])
     more = (
         html("<li class='g-idle'>and {} more: choose “problems” below</li>", len(problems) - PROBLEMS) if len(problems) > PROBLEMS else ""
     )
     return html("<div class='g-sum' role='status'>{}</div><ul class='g-problems'>{}{}</ul>", line, rows, more)
 
 
-def _problem(one: ServiceState | TopicState) -> Html:
-    is_topic = isinstance(one, TopicState)
-    name = short(one.key) if isinstance(one, TopicState) else one.name
-    word = ("topic", one.key) if isinstance(one, TopicState) else ("service", one.name, "")
+def _problem(one: ServiceState | TopicState, graph: NodeGraph) -> Html:
+    word: tuple[str, ...]
+    if isinstance(one, TopicState):
+        name, word, why = short(one.key), ("topic", one.key), one.why
+    else:
+        lost = sum(topic.gone == one.name and topic.grade >= Grade.AMBER for topic in graph.topics)
+        name, word, why = one.name, ("service", one.name, ""), f"service {one.why}"
+        why += f"; {lost} of its topics {'is' if lost == 1 else 'are'} missed" if lost else ""
     return html(
         "<li class='g-a-{}'>{} <button type='button' class='g-link' {}>{}</button> <span>{}</span></li>",
         STYLES[one.grade],
         SIGNS[one.grade],
         does(*word),
         name,
-        one.why if is_topic else f"service {one.why}",
+        why,
     )
 
 

@@ -154,7 +154,8 @@ def test_a_service_that_dies_is_told_with_what_lacks_it(watched):
     watched.run(8.0, scan=False)
     told = re.sub("<[^>]+>", "", watched.slot("graph"))
     assert "service gone since 7 s" in told or "service gone since 8 s" in told
-    assert f"its writer sys/sim_ground is gone; {UGV}/slam waits for it" in told
+    assert "1 of its topics is missed" in told and "1 problem<" in watched.slot("graph")
+    assert f"its writer sys/sim_ground is gone; {UGV}/slam waits for it" in watched.slot("topics")
     assert "g-bad" in watched.slot("wiring") and "<table class='g-system'>" not in watched.slot("topics")
 
 
