@@ -120,8 +120,9 @@ def _evidence(
     for service, endpoint in index.at(key):
         if endpoint.way == "pub":
             _add_writer(e, service, "*" in endpoint.key, boots)
-        elif service.gone_at is None:
-            (e.needed_by if endpoint.way == "need" else e.readers).append(service)
+        else:  # one that is gone keeps its place in the graph, but waits for nothing
+            waits = endpoint.way == "need" and service.gone_at is None
+            (e.needed_by if waits else e.readers).append(service)
     e.readers = list({s.name: s for s in (*e.needed_by, *e.readers)}.values())
     if not e.writers and not e.gone:  # what processes say of themselves is no service's output
         e.writers = [s for s in book.services.values() if s.gone_at is None and s.boot in boots]

@@ -20,7 +20,7 @@ SHOWN_MOST = 32_768  # bytes of a message that is kept to be shown
 
 @dataclass
 class KeyTraffic:
-    """The messages of one key. Times in s, wall; the first message came at ``since``."""
+    """The messages of one key. Times in s, wall; the newest sender was first heard at ``since``."""
 
     key: str
     since: float
@@ -58,6 +58,9 @@ class KeyTraffic:
     def _hear_sender(self, boot: int, t: float) -> None:
         if boot in self.senders and next(reversed(self.senders)) != boot:
             self.rivals_at = t
+        if boot not in self.senders:  # one that was started again: its rate is its own
+            self.since = t
+            self._bins.clear()
         self.senders.pop(boot, None)
         self.senders[boot] = t
         if len(self.senders) > SENDERS_MOST:

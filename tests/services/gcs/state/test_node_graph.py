@@ -188,6 +188,14 @@ def test_why_its_process_failed_stands_beside_a_service_that_is_gone_and_one_tha
     assert bus.service("burger/slam").grade is Grade.QUIET
 
 
+def test_a_writer_that_was_started_again_is_not_called_slow_for_the_pause(bus):
+    bus.run(8.0, LIDAR, LOCALIZED)
+    bus.run(3.0, LIDAR)
+    bus.tokens = [token.replace("slam/2", "slam/5") for token in bus.tokens]
+    bus.run(1.0, LIDAR, (POSE, PoseInFrame, 50, 5))
+    assert bus.graph.problems == [] and bus.topic(POSE).rate == pytest.approx(50.0, rel=0.15)
+
+
 def test_a_service_that_says_that_it_waits_is_amber(bus):
     bus.processes.hear_health(0.0, [Health(service="slam", pid=4, missing=["slam:scan"])])
     bus.run(1.0)
