@@ -11,30 +11,31 @@ import msgspec
 import numpy as np
 
 Name = Annotated[str, msgspec.Meta(max_length=64)]
+ServiceKey = Annotated[str, msgspec.Meta(max_length=96)]
 Share = Annotated[float, msgspec.Meta(ge=-1.0, le=1.0)]
 Metres = Annotated[float, msgspec.Meta(ge=-1e6, le=1e6)]
 Degrees = Annotated[float, msgspec.Meta(ge=-360.0, le=360.0)]
 
 
 @dataclass(frozen=True)
-class Asked:
+class PageAction:
     """Base of all actions. page: which browser asks."""
 
     page: int
 
 
 @dataclass(frozen=True)
-class Join(Asked):
+class Join(PageAction):
     """A browser has connected."""
 
 
 @dataclass(frozen=True)
-class Leave(Asked):
+class Leave(PageAction):
     """A browser has disconnected."""
 
 
 @dataclass(frozen=True)
-class Hello(Asked):
+class Hello(PageAction):
     """Who sits before the page, and which vehicle it showed before the connection was lost ("" at first)."""
 
     operator: Annotated[str, msgspec.Meta(pattern="^[0-9a-f]{32}$")]
@@ -42,35 +43,35 @@ class Hello(Asked):
 
 
 @dataclass(frozen=True)
-class Beat(Asked):
+class Beat(PageAction):
     """The page has shown this beat of the status bar: how old is what the operator sees."""
 
     beat: Annotated[str, msgspec.Meta(max_length=20)]
 
 
 @dataclass(frozen=True)
-class Select(Asked):
+class Select(PageAction):
     """Show this vehicle on the page."""
 
     vehicle: Name
 
 
 @dataclass(frozen=True)
-class OpenTab(Asked):
+class OpenTab(PageAction):
     """The page shows this tab."""
 
     tab: Name
 
 
 @dataclass(frozen=True)
-class Dress(Asked):
+class Dress(PageAction):
     """The page is light or dark."""
 
     theme: Literal["light", "dark"]
 
 
 @dataclass(frozen=True)
-class Shape(Asked):
+class Shape(PageAction):
     """The page's 3-D view has this width over height [-]; touched: somebody has turned it by hand."""
 
     aspect: Annotated[float, msgspec.Meta(ge=0.05, le=20.0)]
@@ -78,14 +79,14 @@ class Shape(Asked):
 
 
 @dataclass(frozen=True)
-class ChooseView(Asked):
+class ChooseView(PageAction):
     """Look at the scene from a named view."""
 
     view: Name
 
 
 @dataclass(frozen=True)
-class Layer(Asked):
+class Layer(PageAction):
     """Show or hide a layer of the scene on a page."""
 
     name: Name
@@ -93,19 +94,48 @@ class Layer(Asked):
 
 
 @dataclass(frozen=True)
-class ShowCamera(Asked):
+class ShowCamera(PageAction):
     """Show a camera of the vehicle on the page: image, chase or gimbal."""
 
     name: Name
 
 
 @dataclass(frozen=True)
-class Looking(Asked):
+class Looking(PageAction):
     """The page reports that the camera picture is visible."""
 
 
 @dataclass(frozen=True)
-class ClickGround(Asked):
+class FilterTopics(PageAction):
+    """List topics whose key, type or services contain this text."""
+
+    text: Name
+
+
+@dataclass(frozen=True)
+class ScopeTopics(PageAction):
+    """List the topics of the vehicle on show, all, or those that something is wrong with."""
+
+    scope: Literal["vehicle", "all", "problems"]
+
+
+@dataclass(frozen=True)
+class ShowService(PageAction):
+    """List the topics of a service (``owner/name``), or of the bundle that leads ``to`` another one; "" for all."""
+
+    node: ServiceKey
+    to: ServiceKey
+
+
+@dataclass(frozen=True)
+class ShowTopic(PageAction):
+    """Show the newest message of a key; "" for none."""
+
+    key: Annotated[str, msgspec.Meta(max_length=200)]
+
+
+@dataclass(frozen=True)
+class ClickGround(PageAction):
     """A click that hit no vehicle: its ray (origin [m], direction), world frame."""
 
     origin: tuple[float, float, float]
@@ -113,14 +143,14 @@ class ClickGround(Asked):
 
 
 @dataclass(frozen=True)
-class Point(Asked):
+class Point(PageAction):
     """What is to be done at the place that was clicked: one of ``pointing.TOOLS``; "" closes the menu."""
 
     tool: Name
 
 
 @dataclass(frozen=True)
-class Command(Asked):
+class Command(PageAction):
     """A command of ``offers``, by its key, to a vehicle."""
 
     vehicle: Name
@@ -128,24 +158,24 @@ class Command(Asked):
 
 
 @dataclass(frozen=True)
-class StopAll(Asked):
+class StopAll(PageAction):
     """Engage STOP ALL."""
 
 
 @dataclass(frozen=True)
-class ReleaseStop(Asked):
+class ReleaseStop(PageAction):
     """Release STOP ALL."""
 
 
 @dataclass(frozen=True)
-class RequestControl(Asked):
+class RequestControl(PageAction):
     """Ask for control of a vehicle that another operator controls."""
 
     vehicle: Name
 
 
 @dataclass(frozen=True)
-class AnswerControl(Asked):
+class AnswerControl(PageAction):
     """Give control of a vehicle to the operator that asks for it, or keep it."""
 
     vehicle: Name
@@ -153,19 +183,19 @@ class AnswerControl(Asked):
 
 
 @dataclass(frozen=True)
-class TakeWheel(Asked):
+class TakeWheel(PageAction):
     """Drive the vehicle by hand from this page."""
 
     vehicle: Name
 
 
 @dataclass(frozen=True)
-class LeaveWheel(Asked):
+class LeaveWheel(PageAction):
     """End driving by hand from this page."""
 
 
 @dataclass(frozen=True)
-class Steer(Asked):
+class Steer(PageAction):
     """Directions that a page holds: parts (-1..1) of the linear and the angular scale."""
 
     forward: Share
@@ -173,14 +203,14 @@ class Steer(Asked):
 
 
 @dataclass(frozen=True)
-class Rescale(Asked):
+class Rescale(PageAction):
     """Change the speeds at which the page drives; key: one of teleop_drive.SCALINGS."""
 
     key: Name
 
 
 @dataclass(frozen=True)
-class AimGimbal(Asked):
+class AimGimbal(PageAction):
     """Turn one axis of the gimbal to an angle, in degrees as the slider has it."""
 
     vehicle: Name
@@ -189,7 +219,7 @@ class AimGimbal(Asked):
 
 
 @dataclass(frozen=True)
-class GimbalMode(Asked):
+class GimbalMode(PageAction):
     """What the gimbal's angles are relative to: one of ``wording.GIMBAL_MODES``."""
 
     vehicle: Name
@@ -197,21 +227,21 @@ class GimbalMode(Asked):
 
 
 @dataclass(frozen=True)
-class RunClock(Asked):
+class RunClock(PageAction):
     """Pause, resume, step or reset the simulation; a reset wants a second click."""
 
     what: Literal["pause", "resume", "step", "reset"]
 
 
 @dataclass(frozen=True)
-class SetRate(Asked):
+class SetRate(PageAction):
     """Simulation seconds per second; 0 = as fast as it goes."""
 
     rate: Annotated[float, msgspec.Meta(ge=0.0, le=100.0)]
 
 
 @dataclass(frozen=True)
-class LaunchMission(Asked):
+class LaunchMission(PageAction):
     """End the mission that runs and start this one; wants a second click."""
 
     mission: Name

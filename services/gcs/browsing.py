@@ -1,24 +1,30 @@
 """What a page changes of its own view only: vehicle, tab, camera, layers; and what it says of itself."""
 
+from dataclasses import replace
 from typing import Any
 
 from schemas.messages import PreviewReply
 from services.gcs.actions import (
-    Asked,
     Beat,
     ChooseView,
     Dress,
+    FilterTopics,
     Hello,
     Join,
     Layer,
     Leave,
     Looking,
     OpenTab,
+    PageAction,
+    ScopeTopics,
     Select,
     Shape,
     ShowCamera,
+    ShowService,
+    ShowTopic,
 )
 from services.gcs.by_hand import ManualDriving
+from services.gcs.state.graph_choice import GraphChoice
 from services.gcs.state.session import ROOTS, VIEWS, BrowserSession
 from services.gcs.state.state import Model
 from uvf.runtime.contract.service import Answer
@@ -31,7 +37,7 @@ class Browsing:
         self._model = model
         self._by_hand = by_hand
 
-    def shows(self, t: float, action: Asked) -> bool:
+    def shows(self, t: float, action: PageAction) -> bool:
         """Carries out an action at ``t`` [s, wall] that changes only what is seen; returns whether it is one."""
         session = self._model.sessions.get(action.page)
         match action:
@@ -50,7 +56,7 @@ class Browsing:
                 return session is None or self._sets(t, session, action)
         return True
 
-    def _sets(self, t: float, session: BrowserSession, action: Asked) -> bool:
+    def _sets(self, t: float, session: BrowserSession, action: PageAction) -> bool:
         match action:
             case Beat(_, beat):
                 session.seen = max(session.seen, min(_number(beat), t))
@@ -71,6 +77,8 @@ class Browsing:
                 session.looked_at = t
             case ChooseView() | Layer():
                 pass
+            case FilterTopics() | ScopeTopics() | ShowService() | ShowTopic():
+                session.graph = _chosen(session.graph, action)
             case _:
                 return False
         return True
@@ -92,6 +100,20 @@ class Browsing:
             pointed = session.pointed
             if pointed is not None and pointed.vehicle == vehicle and (pointed.x, pointed.y) == (at.x, at.y):
                 pointed.preview = reply
+
+
+def _chosen(before: GraphChoice, action: PageAction) -> GraphChoice:
+    """What is chosen in the tab Graph after the action; what is pressed again is no longer chosen."""
+    match action:
+        case FilterTopics(_, text):
+            return replace(before, text=text.strip())
+        case ScopeTopics(_, scope):
+            return replace(before, scope=scope)
+        case ShowService(_, node, to):
+            return replace(before, node="", to="") if (node, to) == (before.node, before.to) else replace(before, node=node, to=to)
+        case ShowTopic(_, key):
+            return replace(before, topic="" if key == before.topic else key)
+    return before
 
 
 def _number(beat: str) -> float:

@@ -4,7 +4,7 @@ import sys
 
 from services.gcs.service import GroundStation
 from uvf.models.scenario import Scenario
-from uvf.runtime.bus.address import address_from
+from uvf.runtime.bus.address import address_from, router_from
 from uvf.runtime.contract.instances import ServiceInstance
 
 
@@ -15,10 +15,11 @@ def build(site: Scenario) -> list[ServiceInstance]:
     def make() -> GroundStation:
         from services.gcs.page.viser_page import ViserPage
         from services.gcs.view.cameras import cameras
+        from services.gcs.zenoh_watch import ZenohWatch
 
         page = ViserPage(address, next(iter(cameras(site).values())))
         if address.token:
             sys.stderr.write(f"gcs: the page, for those who have its token: {address.url}\n")
-        return GroundStation(site, page)
+        return GroundStation(site, page, ZenohWatch(router_from()))
 
     return [ServiceInstance(GroundStation, make, writes_for=tuple(site.members))]

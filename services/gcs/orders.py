@@ -5,6 +5,8 @@ from typing import Any
 from google.protobuf.message import Message
 
 from schemas.messages import Event
+from services.gcs.state.control import called
+from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import LOST_AFTER, Order, VehicleModel
 from services.gcs.state.wording import describe
@@ -32,6 +34,28 @@ class OrderBook:
             return False
         vehicle.order = Order(describe(request), t)
         return True
+
+    def reason_against(self, session: BrowserSession, v: VehicleModel) -> str:
+        """Why this page may not command the vehicle: another operator controls it."""
+        return self._model.control.reason_against(v.name, session.operator, self._model.present)
+
+    def _takes_control(self, session: BrowserSession, v: VehicleModel) -> None:
+        if self._model.control.take(v.name, session.operator):
+            self._model.note(v.name, f"{called(session.operator)} controls it", Event.NOTICE, of_operator=True)
+
+    def begin(self, t: float, session: BrowserSession, name: str, request: Message, why_not: str = "") -> VehicleModel | None:
+        """The vehicle, if the request may be sent to it from this page; else it is refused at once, with the reason."""
+        vehicle = self._model.vehicles.get(name)
+        if vehicle is None:
+            return None
+        why = self.reason_against(session, vehicle) or why_not
+        if why:
+            self.refuse(t, vehicle, describe(request), why)
+            return None
+        if not self.open(t, vehicle, request):
+            return None
+        self._takes_control(session, vehicle)
+        return vehicle
 
     def refuse(self, t: float, vehicle: VehicleModel | None, text: str, reason: str) -> None:
         """Ends an order at ``t`` [s, wall] that is not carried out."""

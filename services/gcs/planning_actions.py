@@ -5,13 +5,13 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from services.gcs.actions import Asked, Metres, Name
+from services.gcs.actions import Metres, Name, PageAction
 
 Index = Annotated[int, msgspec.Meta(ge=0, le=1000)]
 
 
 @dataclass(frozen=True)
-class OfPlan(Asked):
+class OfPlan(PageAction):
     """Base of these actions. vehicle: whose mission."""
 
     vehicle: Name

@@ -44,10 +44,12 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.gcs.commands import Commander
+from services.gcs.listening import BusListening
 from services.gcs.offers import SOURCE
 from services.gcs.state.state import Model
 from services.gcs.view.composer import Composer
 from services.gcs.view.drawing import Page
+from services.gcs.watch import BusWatch
 from uvf.models.scenario import Scenario
 from uvf.runtime.contract.declaration import Reads, Writes, answers, call, each_vehicle, every, optional, stop_all, topic
 from uvf.runtime.contract.service import Answer, Service
@@ -143,10 +145,11 @@ class GroundStation(Service):
         clock_request: list[ClockRequest] = call(topics.CLOCK_REQUEST)
         launch: list[LaunchRequest] = call(topics.LAUNCH)
 
-    def __init__(self, site: Scenario, page: Page) -> None:
+    def __init__(self, site: Scenario, page: Page, watch: BusWatch) -> None:
         self._page = page
         self._model = Model(site)
         self._commander = Commander(self._model)
+        self._listening = BusListening(self._model, watch)
         self._composer = Composer(self._model, self._commander.by_hand)
 
     def step(self, t: float, now: Inputs) -> Outputs:
@@ -182,11 +185,13 @@ class GroundStation(Service):
         out = self._commander.act(t, self._page.actions())
         self._commander.expire(t)
         self._commander.planning.advance()
+        self._listening.step(t)
         self._page.show(self._composer.picture(t))
         outputs = self.Outputs()
         outputs.update(out.said())
         return outputs
 
     def close(self) -> None:
-        """Stops the page's server."""
+        """Stops the page's server and the watch."""
+        self._listening.close()
         self._page.close()

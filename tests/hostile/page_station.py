@@ -11,6 +11,7 @@ from services.gcs.page.viser_page import ViserPage
 from services.gcs.service import GroundStation
 from services.gcs.view.cameras import cameras
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
+from tests.services.gcs.watches import FakeWatch
 from uvf.runtime.bus.address import Address
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service_runner import ServiceRunner
@@ -22,7 +23,7 @@ def main(port: int) -> None:
     viser_socket.SILENT_FOR = SILENT_FOR
     site, script = with_eyes(demo_site()), Script()
     page = ViserPage(Address(port=port), next(iter(cameras(site).values())))
-    shell = ServiceRunner(ServiceInstance(GroundStation, lambda: GroundStation(site, page)), script.bus)
+    shell = ServiceRunner(ServiceInstance(GroundStation, lambda: GroundStation(site, page, FakeWatch())), script.bus)
     begin, told = time.monotonic(), None
     while True:
         script.publish(time.monotonic() - begin)

@@ -15,7 +15,7 @@ from urllib.parse import parse_qs, urlsplit
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from services.gcs.page.assets import Asset
+from services.gcs.page.viser_assets import Asset
 from uvf.runtime.bus.address import is_loopback
 
 COOKIE = "gcs"

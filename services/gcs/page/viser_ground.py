@@ -12,7 +12,7 @@ QUAD = np.array(((0, 1, 2), (0, 2, 3)), dtype=np.uint32)
 Rgb = tuple[int, int, int]
 
 
-class Surroundings(NamedTuple):
+class SceneColours(NamedTuple):
     """Colours of one theme."""
 
     zenith: Rgb
@@ -23,8 +23,8 @@ class Surroundings(NamedTuple):
 
 
 THEMES = {
-    "light": Surroundings((150, 190, 232), (232, 240, 248), (196, 205, 216), (160, 173, 189), (222, 228, 235)),
-    "dark": Surroundings((10, 17, 32), (74, 98, 134), (66, 80, 100), (96, 114, 140), (22, 30, 42)),
+    "light": SceneColours((150, 190, 232), (232, 240, 248), (196, 205, 216), (160, 173, 189), (222, 228, 235)),
+    "dark": SceneColours((10, 17, 32), (74, 98, 134), (66, 80, 100), (96, 114, 140), (22, 30, 42)),
 }
 
 
@@ -56,7 +56,7 @@ def light(scene: Any) -> None:
     scene.add_light_hemisphere("/world/sky", sky_color=(235, 242, 255), ground_color=(120, 110, 100), intensity=1.6)
 
 
-def sky(colours: Surroundings) -> NDArray[np.uint8]:
+def sky(colours: SceneColours) -> NDArray[np.uint8]:
     """Background image (64, 4, 3) RGB: a sky that ends in the ground's haze at the horizon."""
     share = np.linspace(0, 1, 64)[:, None, None] ** 1.5
     return np.tile(np.array(colours.zenith) * (1 - share) + np.array(colours.horizon) * share, (1, 4, 1)).astype(np.uint8)

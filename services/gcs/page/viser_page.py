@@ -7,7 +7,7 @@ from typing import Any
 
 import viser
 
-from services.gcs.actions import Asked, ClickGround, Join, Leave, Select
+from services.gcs.actions import ClickGround, Join, Leave, PageAction, Select
 from services.gcs.page.viser_ground import light
 from services.gcs.page.viser_panel import ViserPanel
 from services.gcs.page.viser_scene import ViserScene
@@ -26,7 +26,7 @@ class ViserPage:
 
     def __init__(self, address: Address, camera: CameraView) -> None:
         claim(address)
-        self._actions: queue.SimpleQueue[Asked] = queue.SimpleQueue()
+        self._actions: queue.SimpleQueue[PageAction] = queue.SimpleQueue()
         self._server = guarded_server(address)
         self._panels: dict[int, ViserPanel] = {}
         self._picked: dict[int, tuple[float, float]] = {}
@@ -70,7 +70,7 @@ class ViserPage:
             if panel is not None:
                 panel.show(shown)
 
-    def actions(self) -> list[Asked]:
+    def actions(self) -> list[PageAction]:
         """Takes the actions asked for since the last call."""
         taken = []
         while not self._actions.empty():

@@ -7,7 +7,7 @@ import numpy as np
 import viser
 from viser import _messages
 
-from services.gcs.actions import Asked
+from services.gcs.actions import PageAction
 from services.gcs.page.viser_ground import dress
 from services.gcs.page.viser_scene import ViserScene
 from services.gcs.page.words import action_in
@@ -22,7 +22,7 @@ SETTLES = 0.5  # s that a browser has to say where its camera is
 class ViserPanel:
     """A browser's own panel. ask: takes what it asks for."""
 
-    def __init__(self, client: viser.ClientHandle, ask: Callable[[Asked], None]) -> None:
+    def __init__(self, client: viser.ClientHandle, ask: Callable[[PageAction], None]) -> None:
         self._client = client
         self._ask = ask
         self._slots: dict[str, Any] = {}

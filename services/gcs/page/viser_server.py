@@ -11,8 +11,8 @@ import websockets.asyncio.server as websocket_server
 from viser import _messages
 
 from services.gcs.page import viser_join
-from services.gcs.page.assets import assets
 from services.gcs.page.guard import Guard
+from services.gcs.page.viser_assets import assets
 from services.gcs.page.viser_socket import LARGEST, Door
 from services.gcs.page.viser_wakeup import wake_from_the_loop
 from uvf.models.yaml_data import BadInput

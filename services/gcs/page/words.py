@@ -7,7 +7,7 @@ import msgspec
 
 from services.gcs import actions, planning_actions
 
-WORDS: Mapping[str, type[actions.Asked]] = {
+WORDS: Mapping[str, type[actions.PageAction]] = {
     "hello": actions.Hello,
     "beat": actions.Beat,
     "select": actions.Select,
@@ -17,6 +17,10 @@ WORDS: Mapping[str, type[actions.Asked]] = {
     "view": actions.ChooseView,
     "layer": actions.Layer,
     "camera": actions.ShowCamera,
+    "topics-text": actions.FilterTopics,
+    "topics-scope": actions.ScopeTopics,
+    "service": actions.ShowService,
+    "topic": actions.ShowTopic,
     "looks": actions.Looking,
     "point": actions.Point,
     "command": actions.Command,
@@ -46,7 +50,7 @@ WORDS: Mapping[str, type[actions.Asked]] = {
 }
 
 
-def action_in(word: str, page: int) -> actions.Asked | None:
+def action_in(word: str, page: int) -> actions.PageAction | None:
     """The action that a word of this page's script asks for; None for one that is none. Which page speaks is not the word's to say."""
     try:
         said = msgspec.json.decode(word)

@@ -4,6 +4,7 @@ from collections.abc import Set
 from dataclasses import dataclass, field
 from math import inf
 
+from services.gcs.state.graph_choice import GraphChoice
 from services.gcs.state.pointing import Pointed
 
 ROOTS = {
@@ -61,6 +62,9 @@ class BrowserSession:
     """(vehicle, command, when [s, wall]) of the first of the two clicks that some commands take."""
     pointed: Pointed | None = None
     """The place on the ground that was clicked."""
+
+    graph: GraphChoice = field(default_factory=GraphChoice)
+    """What it shows of the graph of services and topics."""
 
     def confirms(self, vehicle: str, key: str, t: float) -> bool:
         """Whether a second click at ``t`` [s, wall] would carry out a risky command."""

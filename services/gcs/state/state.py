@@ -19,6 +19,7 @@ from schemas.topics import SYSTEM
 from services.gcs.state.control import ControlBook
 from services.gcs.state.event_log import EventHistory, EventLine
 from services.gcs.state.external_vehicles import FORGOTTEN_AFTER, ExternalVehicles
+from services.gcs.state.graph_book import GraphBook
 from services.gcs.state.process_book import ProcessBook
 from services.gcs.state.refusals import PageRefusals
 from services.gcs.state.session import SHOWN_AT_FIRST, BrowserSession
@@ -69,6 +70,7 @@ class Model:
         """True motion of the vehicles among it."""
         self.refused = PageRefusals(self._warn)
         self.processes = ProcessBook(self.refused)
+        self.graph = GraphBook(self.processes, self.refused)
         self._external = ExternalVehicles()
 
     def _add(self, name: str, member: MissionVehicle) -> None:

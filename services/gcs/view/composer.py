@@ -7,11 +7,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.gcs.by_hand import ManualDriving
+from services.gcs.state.graph_choice import GraphChoice
+from services.gcs.state.node_graph import NodeGraph
 from services.gcs.state.pointing import Pointed
 from services.gcs.state.session import ROOTS, VIEWS, BrowserSession, hidden_roots
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
-from services.gcs.view import camera_panel, command_panel, facts, fleet, menus, plan, records, run_panel, status, teleoperation
+from services.gcs.view import (
+    camera_panel,
+    command_panel,
+    facts,
+    fleet,
+    graph,
+    graph_drawing,
+    menus,
+    plan,
+    records,
+    run_panel,
+    status,
+    teleoperation,
+)
 from services.gcs.view.cameras import ASPECT, cameras
 from services.gcs.view.controls import check_box, choice
 from services.gcs.view.drawing import CameraView, Colour, Node, PagePanel, Picture, Polyline
@@ -26,13 +41,28 @@ COLOURS: Mapping[str, Colour] = {"/own/way": (150, 160, 175), "/own/drawn": (140
 FAST = ("run", "plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
 EVERY = 2
 """Steps between two drawings of these, which tell at once; of the rest one is drawn with each step."""
-SLOW = ("fleet", "cameras", "facts", "overview", "log", "processes", "notices", "layers", "views", "hint", "help")
+SLOW = (
+    "fleet",
+    "cameras",
+    "facts",
+    "overview",
+    "log",
+    "graph",
+    "wiring",
+    "topics",
+    "processes",
+    "notices",
+    "layers",
+    "views",
+    "hint",
+    "help",
+)
 OF_TAB: Mapping[str, tuple[str, ...]] = {
     "fly": ("instrument", "picture", "cameras", "facts"),
     "drive": ("instrument", "picture", "wheel", "cameras", "facts"),
     "plan": ("plan", "handles"),
     "run": ("run",),
-    "graph": ("processes",),
+    "graph": ("graph", "wiring", "topics", "processes"),
     "log": ("log",),
     "help": ("help",),
 }
@@ -40,6 +70,8 @@ OF_TAB: Mapping[str, tuple[str, ...]] = {
 IN_TABS = frozenset(name for names in OF_TAB.values() for name in names)
 
 Draw = Callable[[], Html]
+OnShow = tuple[str, str, GraphChoice]
+"""The vehicle, the tab, and what is chosen in the tab Graph."""
 
 
 class Composer:
@@ -50,8 +82,8 @@ class Composer:
         self._by_hand = by_hand
         self._view = SceneView(model)
         self._overview = Overview(model)
-        self._own: dict[int, tuple[tuple[str, str], dict[str, Html]]] = {}
-        """Page -> the (vehicle, tab) that it showed, and what it showed of it."""
+        self._own: dict[int, tuple[OnShow, dict[str, Html]]] = {}
+        """Page -> what it showed, and the words."""
         self._drawn: dict[tuple[str, str], Html] = {}
         """What has been drawn in this step: (what, of which vehicle); browsers that show the same share it."""
         self._previews: dict[int, dict[str, tuple[object, Node]]] = {}
@@ -75,8 +107,8 @@ class Composer:
     def _panel(self, session: BrowserSession, t: float) -> PagePanel:
         """Drawn as a whole when another vehicle or tab comes on show: never the words about one under the name of another."""
         chosen = self._model.chosen_by(session)
-        on_show = (session.vehicle, session.tab)
-        before, words = self._own.get(session.page, (("", ""), {}))
+        on_show = (session.vehicle, session.tab, session.graph)
+        before, words = self._own.get(session.page, (None, {}))
         new = not words or before != on_show
         draws = self._words(session, chosen, t)
         words = {name: content for name, content in words.items() if name in draws}
@@ -97,6 +129,7 @@ class Composer:
             "layers": lambda: _layers(session),
         }
         in_tabs = {
+            **self._graph(session, t),
             "processes": self._once("processes", None, lambda: records.processes(model, t)),
             "run": lambda: run_panel.run_panel(model, session, t),
             "log": self._once("log", None, lambda: records.event_log(model.log)),
@@ -120,6 +153,18 @@ class Composer:
                 "handles": self._once("handles", v, lambda: plan.handles(v)),
             }
         return always | {name: in_tabs[name] for name in OF_TAB.get(session.tab, ()) if name in in_tabs}
+
+    def _graph(self, session: BrowserSession, t: float) -> dict[str, Draw]:
+        model, choice, vehicle = self._model, session.graph, session.vehicle
+
+        def now() -> NodeGraph:
+            return model.graph.graph(t, model.clock, model.clock_at)
+
+        return {
+            "graph": self._once("graph", None, lambda: graph.summary(now(), model.graph.has_looked)),
+            "wiring": lambda: graph_drawing.drawing(now(), choice, vehicle),
+            "topics": lambda: graph.topics(now(), choice, vehicle, model.graph),
+        }
 
     def _once(self, what: str, v: VehicleModel | None, draw: Draw) -> Draw:
         key = (what, v.name if v is not None else "")

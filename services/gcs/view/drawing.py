@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from services.gcs.actions import Asked
+from services.gcs.actions import PageAction
 from services.gcs.state.vehicle_model import DisplayPose
 from services.gcs.view.markup import Html
 
@@ -111,7 +111,7 @@ class Page(Protocol):
         """Shows a picture in all browsers."""
         ...
 
-    def actions(self) -> list[Asked]:
+    def actions(self) -> list[PageAction]:
         """Actions requested since the last call, oldest first."""
 
     def close(self) -> None:

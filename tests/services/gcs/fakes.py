@@ -10,6 +10,7 @@ from services.gcs.actions import Beat, ClickGround, Hello, Join, OpenTab, Point
 from services.gcs.page.words import action_in
 from services.gcs.service import GroundStation
 from tests.services.gcs.scripted import Script, demo_site
+from tests.services.gcs.watches import FakeWatch
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service_runner import ServiceRunner
 
@@ -87,8 +88,9 @@ class Station:
     def __init__(self, accept=True, site=None):
         self.script = Script(accept=accept)
         self.page = FakePage()
+        self.watch = FakeWatch()
         self.site = site or demo_site()
-        self.service = GroundStation(self.site, self.page)
+        self.service = GroundStation(self.site, self.page, self.watch)
         self.shell = ServiceRunner(ServiceInstance(GroundStation, lambda: self.service), self.script.bus)
         self.t = 0.0
 

@@ -3,6 +3,7 @@
 import { on, say } from './link.js';
 import { opened, show } from './tabs.js';
 import './driving.js';
+import './graph.js';
 import { shape } from './scene.js';
 import './handles.js';
 

@@ -168,11 +168,11 @@ class Live:
 
 
 def _declare_tokens(shell: ServiceRunner, bus: ZenohBus) -> None:
-    """The instance and each of its endpoints, for the graph of the running system."""
+    """The instance and each of its endpoints, for the graph of the running system: pub, sub, or need for what holds its step back."""
     bus.token(f"@node/{shell.owner}/{shell.type.name}/{bus.boot:x}")
     everyone = "*" if shell.type.scope == "world" else shell.owner
     ends = [("pub", topic, everyone) for topic in shell.type.outputs.values()]
-    ends += [("sub", declared.topic, owner) for _, declared, owner in shell.reads()]
+    ends += [("need" if declared.required else "sub", declared.topic, owner) for _, declared, owner in shell.reads()]
     for way, topic, owner in ends:
         key = topic.at(owner).replace("/", "%").replace("*", "+")
         bus.token(f"@ep/{shell.owner}/{shell.type.name}/{way}/{key}/{topic.message.DESCRIPTOR.full_name}")

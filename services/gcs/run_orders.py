@@ -1,0 +1,43 @@
+"""What is asked of the simulation as a whole: its clock, and another mission."""
+
+from google.protobuf.message import Message
+
+from schemas.messages import ClockRequest, LaunchRequest
+from services.gcs.actions import LaunchMission, RunClock, SetRate
+from services.gcs.offers import SOURCE
+from services.gcs.orders import OrderBook
+from services.gcs.outbox import Outbox
+from services.gcs.state.session import BrowserSession
+
+CLOCK_ACTIONS = {
+    "pause": ClockRequest.PAUSE,
+    "resume": ClockRequest.RESUME,
+    "step": ClockRequest.STEP,
+    "reset": ClockRequest.RESET,
+}
+
+
+class RunOrders:
+    """Turns them into requests to the conductor and the launcher."""
+
+    def __init__(self, orders: OrderBook) -> None:
+        self._orders = orders
+
+    def ask(self, t: float, session: BrowserSession, action: RunClock | SetRate | LaunchMission, out: Outbox) -> None:
+        """What concerns the simulation as a whole: anybody may ask for it, and what loses the run wants a second click."""
+        request: Message
+        match action:
+            case RunClock(_, what):
+                name, request = "clock_request", ClockRequest(action=CLOCK_ACTIONS[what])
+            case SetRate(_, rate):
+                name, request = "clock_request", ClockRequest(action=ClockRequest.SET_RATE, rate=rate)
+            case LaunchMission(_, mission):
+                name, request = "launch", LaunchRequest(mission=mission, source=SOURCE)
+        key = f"{name} {getattr(action, 'what', getattr(action, 'mission', ''))}"
+        loses = isinstance(action, LaunchMission) or (isinstance(action, RunClock) and action.what == "reset")
+        if loses and not session.confirms("", key, t):
+            session.to_confirm = ("", key, t)
+            return
+        session.to_confirm = None
+        self._orders.open(t, None, request)
+        out.calls.setdefault(name, []).append(request)

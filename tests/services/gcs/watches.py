@@ -1,0 +1,41 @@
+"""A watch that hears what a test says, and tokens as living services declare them."""
+
+from services.gcs.watch import WatchedMessage
+
+
+class FakeWatch:
+    def __init__(self):
+        self.on = self.closed = False
+        self.starts = 0
+        self.heard = []
+        self.told = None
+
+    def start(self):
+        self.on, self.starts = True, self.starts + 1
+
+    def stop(self):
+        self.on = False
+
+    def samples(self):
+        taken, self.heard = self.heard, []
+        return taken
+
+    def tokens(self):
+        return self.told
+
+    def close(self):
+        self.closed = True
+
+    def say(self, key, message, boot=1):
+        self.heard.append(WatchedMessage(key, message.DESCRIPTOR.full_name, message.SerializeToString(), 0.0, boot))
+
+
+def service_tokens(name, boot=1, pub=(), sub=(), need=()):
+    """Tokens of ``owner/service``; its endpoints as topics of the owner, or keys."""
+    owner = name.partition("/")[0]
+    ends = [(way, one) for way, some in (("pub", pub), ("sub", sub), ("need", need)) for one in some]
+    tokens = [f"@node/{name}/{boot:x}"]
+    for way, one in ends:
+        key, kind = (one, "x") if isinstance(one, str) else (one.at(owner), one.message.DESCRIPTOR.full_name)
+        tokens.append(f"@ep/{name}/{way}/{key.replace('/', '%').replace('*', '+')}/{kind}")
+    return tokens
