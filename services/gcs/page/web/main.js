@@ -6,6 +6,7 @@ import './driving.js';
 import './graph.js';
 import { shape } from './scene.js';
 import './handles.js';
+import './keys.js';
 
 const root = document.documentElement;
 const stored = (key, value) => { try { if (value !== undefined) localStorage.setItem(key, value); return localStorage.getItem(key) || ''; } catch { return ''; } };
