@@ -21,7 +21,7 @@ class EventLine(NamedTuple):
     vehicle: str  # or "" for the system
     text: str
     of_operator: bool = False
-    """PageAction for on the page, or what became of it."""
+    """Asked for on the page, or what became of it."""
 
     @property
     def kind(self) -> str:

@@ -81,7 +81,7 @@ def topics(graph: NodeGraph, choice: GraphChoice, vehicle: str, book: GraphBook)
     body = (
         html("<table class='g-system g-topics'><tr>{}</tr>{}</table>{}", head, rows, more) if found else html("<p class='g-empty'>None</p>")
     )
-    return html("<h4 class='g-h'>Topics <span>{} of {}</span></h4>{}{}", len(found), len(graph.topics), _filters(choice, vehicle), body)
+    return html("<h2 class='g-h'>Topics <span>{} of {}</span></h2>{}{}", len(found), len(graph.topics), _filters(choice, vehicle), body)
 
 
 def _filters(choice: GraphChoice, vehicle: str) -> Html:

@@ -73,7 +73,7 @@ def _state(v: VehicleModel, draft: PlanDraft, session: BrowserSession, outlook: 
 def _table(v: VehicleModel, draft: PlanDraft) -> Html:
     if not draft.items:
         return html("<p class='g-empty'>Click the map and choose <b>Add waypoint</b>.</p>")
-    head = "<tr><th>#</th><th>item</th><th>x m</th><th>y m</th><th>{}</th><th></th></tr>"
+    head = "<tr><th>#</th><th>item</th><th>x m</th><th>y m</th><th>{}</th><td></td></tr>"
     rows = joined(_row(v, draft, i, item) for i, item in enumerate(draft.items))
     return html("<table class='g-plan'>{}{}</table>", html(head, "z m" if v.flies else ""), rows)
 

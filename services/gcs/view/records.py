@@ -43,8 +43,8 @@ def event_log(journal: EventHistory) -> Html:
     choice = joined(html("<button type='button' data-log='{}'>{}</button>", key, name) for key, name in FILTERS.items())
     rest = _rows([line for line in lines if not line.of_operator])
     return html(
-        "<h4 class='g-h'>PageAction for on this page</h4><table class='g-log' aria-live='polite'>{}</table>"
-        "<h4 class='g-h'>Events <span class='g-filter' role='group' aria-label='events shown'>{}</span></h4>"
+        "<h2 class='g-h'>Asked for on this page</h2><table class='g-log' aria-live='polite'>{}</table>"
+        "<h2 class='g-h'>Events <span class='g-filter' role='group' aria-label='events shown'>{}</span></h2>"
         "<table class='g-log g-events'>{}</table>",
         asked,
         choice,
