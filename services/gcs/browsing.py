@@ -24,6 +24,8 @@ from services.gcs.actions import (
     ShowTopic,
 )
 from services.gcs.by_hand import ManualDriving
+from services.gcs.plot_actions import OfPlot
+from services.gcs.plotting import plot
 from services.gcs.state.graph_choice import GraphChoice
 from services.gcs.state.session import ROOTS, VIEWS, BrowserSession
 from services.gcs.state.state import Model
@@ -58,6 +60,8 @@ class Browsing:
 
     def _sets(self, t: float, session: BrowserSession, action: PageAction) -> bool:
         match action:
+            case OfPlot():
+                plot(self._model, session, action)
             case Beat(_, beat):
                 session.seen = max(session.seen, min(_number(beat), t))
             case OpenTab(_, tab):

@@ -1,9 +1,9 @@
-"""Lets the bus be watched exactly while some page has the tab Graph open."""
+"""Lets the bus be watched exactly while some page has the tab Graph open or plots something."""
 
 from services.gcs.state.state import Model
 from services.gcs.watch import BusWatch
 
-TAB = "graph"
+TAB, PLOT_TAB = "graph", "plot"
 
 
 class BusListening:
@@ -16,7 +16,11 @@ class BusListening:
 
     def step(self, t: float) -> None:
         """Brings the watch to what the pages show at ``t`` [s, wall], and takes what it has heard."""
-        wanted = any(session.tab == TAB for session in self._model.sessions.values())
+        sessions = self._model.sessions.values()
+        plotted = {name for session in sessions for name in session.plot.series}
+        looked_at = {session.plot.topic for session in sessions if session.tab == PLOT_TAB and session.plot.topic}
+        self._model.plots.keep(plotted, looked_at)
+        wanted = bool(plotted or looked_at) or any(session.tab == TAB for session in sessions)
         if wanted and not self._on:
             self._model.graph.begin(t)
             self._watch.start()
@@ -24,7 +28,9 @@ class BusListening:
             self._watch.stop()
         self._on = wanted
         if wanted:
-            self._model.graph.hear(t, self._watch.samples(), self._watch.tokens())
+            heard = self._watch.samples()
+            self._model.graph.hear(t, heard, self._watch.tokens())
+            self._model.plots.hear(heard)
 
     def close(self) -> None:
         """Ends the watch."""

@@ -1,17 +1,21 @@
-"""All that travels on the bus, as the tab Graph watches it while some page has it open."""
+"""All that travels on the bus, watched while some page has the tab Graph open or plots something."""
 
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
 
 class WatchedMessage(NamedTuple):
-    """One message of any key. age: how long ago it came [s, wall]; boot: which process sent it, 0 if that is not said."""
+    """One message of any key.
+
+    age: how long ago it came [s, wall]; boot: which process sent it, 0 if that is not said; stamp: s, simulation.
+    """
 
     key: str
     type_name: str
     payload: bytes
     age: float
     boot: int
+    stamp: float = 0.0
 
 
 class BusWatch(Protocol):

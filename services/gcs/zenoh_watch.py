@@ -1,4 +1,4 @@
-"""The watch of the tab Graph on Zenoh: a session of its own, in a thread of its own, while the tab is open."""
+"""The watch on Zenoh: a session of its own, in a thread of its own, while a page needs it."""
 
 import time
 from collections.abc import Sequence
@@ -46,7 +46,7 @@ class ZenohWatch:
         now = time.monotonic()
         while self._run is not None and len(taken) < TAKEN_AT_ONCE and (came := self._run.came.take()) is not None:
             sample, at = came
-            taken.append(WatchedMessage(sample.key, sample.type_name, sample.payload, now - at, sample.boot))
+            taken.append(WatchedMessage(sample.key, sample.type_name, sample.payload, now - at, sample.boot, sample.stamp_ns * 1e-9))
         return taken
 
     def tokens(self) -> Sequence[str] | None:

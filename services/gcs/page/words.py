@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import msgspec
 
-from services.gcs import actions, planning_actions
+from services.gcs import actions, planning_actions, plot_actions
 
 WORDS: Mapping[str, type[actions.PageAction]] = {
     "hello": actions.Hello,
@@ -37,6 +37,12 @@ WORDS: Mapping[str, type[actions.PageAction]] = {
     "clock": actions.RunClock,
     "rate": actions.SetRate,
     "launch": actions.LaunchMission,
+    "plot-topic": plot_actions.PlotTopic,
+    "plot-add": plot_actions.PlotAdd,
+    "plot-remove": plot_actions.PlotRemove,
+    "plot-window": plot_actions.PlotWindow,
+    "plot-hold": plot_actions.PlotHold,
+    "plot-preset": plot_actions.PlotPreset,
     "plan-add": planning_actions.PlanAdd,
     "plan-set": planning_actions.PlanSet,
     "plan-move": planning_actions.PlanMove,

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from math import inf
 
 from services.gcs.state.graph_choice import GraphChoice
+from services.gcs.state.plot_choice import PlotChoice
 from services.gcs.state.pointing import Pointed
 
 ROOTS = {
@@ -52,6 +53,7 @@ class BrowserSession:
     views_chosen: int = 0
     layers: set[str] = field(default_factory=lambda: set(SHOWN_AT_FIRST))
     """What it shows of the scene."""
+    plot: PlotChoice = field(default_factory=PlotChoice)
     camera: str = ""
     """The field of the vehicle whose picture is on show, where it has that camera."""
     looked_at: float = -inf

@@ -20,6 +20,7 @@ from services.gcs.state.control import ControlBook
 from services.gcs.state.event_log import EventHistory, EventLine
 from services.gcs.state.external_vehicles import FORGOTTEN_AFTER, ExternalVehicles
 from services.gcs.state.graph_book import GraphBook
+from services.gcs.state.plot_series import PlotBook
 from services.gcs.state.process_book import ProcessBook
 from services.gcs.state.refusals import PageRefusals
 from services.gcs.state.session import SHOWN_AT_FIRST, BrowserSession
@@ -72,6 +73,7 @@ class Model:
         self.processes = ProcessBook(self.refused)
         self.graph = GraphBook(self.processes, self.refused)
         self._external = ExternalVehicles()
+        self.plots = PlotBook()
 
     def _add(self, name: str, member: MissionVehicle) -> None:
         colour = COLOURS[len(self.vehicles) % len(COLOURS)]

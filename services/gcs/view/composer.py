@@ -22,6 +22,7 @@ from services.gcs.view import (
     graph_drawing,
     menus,
     plan,
+    plot,
     records,
     run_panel,
     status,
@@ -42,6 +43,7 @@ FAST = ("run", "plan", "handles", "stop", "bar", "alerts", "commands", "menu", "
 EVERY = 2
 """Steps between two drawings of these, which tell at once; of the rest one is drawn with each step."""
 SLOW = (
+    "plot",
     "fleet",
     "cameras",
     "facts",
@@ -61,6 +63,7 @@ OF_TAB: Mapping[str, tuple[str, ...]] = {
     "fly": ("instrument", "picture", "cameras", "facts"),
     "drive": ("instrument", "picture", "wheel", "cameras", "facts"),
     "plan": ("plan", "handles"),
+    "plot": ("plot",),
     "run": ("run",),
     "graph": ("graph", "wiring", "topics", "processes"),
     "log": ("log",),
@@ -144,6 +147,7 @@ class Composer:
                 "hint": self._once("hint", v, lambda: menus.hint(model, v, session)),
             }
             in_tabs |= {
+                "plot": lambda: plot.plot_panel(model, v, session),
                 "instrument": self._once("instrument", v, lambda: facts.instrument(v)),
                 "wheel": lambda: teleoperation.wheel(v, self._by_hand, session.page),
                 "picture": lambda: camera_panel.picture(v, session, t),

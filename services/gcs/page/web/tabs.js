@@ -7,6 +7,7 @@ const TABS = {
   fly: ['Fly', 'instrument', 'cameras', 'picture', 'facts'],
   plan: ['Plan', 'plan'],
   drive: ['Drive', 'instrument', 'wheel', 'cameras', 'picture', 'facts'],
+  plot: ['Plot', 'plot'],
   graph: ['Graph', 'graph', 'wiring', 'topics', 'processes'],
   log: ['Log', 'log'],
   run: ['Run', 'run'],
