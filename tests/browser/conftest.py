@@ -11,7 +11,7 @@ from services.gcs.service import GroundStation
 from services.gcs.view.cameras import cameras
 from tests.second_try import Shared
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
-from tests.services.gcs.watches import FakeWatch
+from tests.services.gcs.watches import LocalWatch
 from tests.services.gcs.wire import free_port
 from uvf.runtime.bus.address import Address
 from uvf.runtime.contract.instances import ServiceInstance
@@ -40,7 +40,7 @@ class LiveStation:
         site, self.port = with_eyes(demo_site()), free_port()
         self.script = Script()
         self.page = ViserPage(Address(port=self.port), next(iter(cameras(site).values())))
-        self.service = GroundStation(site, self.page, FakeWatch())
+        self.service = GroundStation(site, self.page, LocalWatch(self.script.bus))
         self.shell = ServiceRunner(ServiceInstance(GroundStation, lambda: self.service), self.script.bus)
         self.moving = self.living = True
         self.t = 0.0

@@ -10,7 +10,7 @@ from tests.services.gcs.scripted import UAV, UGV
 
 pytestmark = pytest.mark.timeout(240)
 
-TABS = {UGV: ("Drive", "Graph", "Log", "Run", "Help"), UAV: ("Fly", "Plan")}
+TABS = {UGV: ("Drive", "Graph", "Log", "Run", "Help"), UAV: ("Fly", "Plan", "Plot")}
 GRAVE = ("serious", "critical")
 FOCUSED = "() => (document.activeElement.getAttribute('aria-label') || document.activeElement.textContent).trim()"
 
@@ -69,7 +69,7 @@ def test_nothing_is_cut_off_sideways(browser, quiet, width):
         page.wait_for_timeout(1000)
         cut = """() => [...document.querySelectorAll('#gcs aside, #gcs .scroll, #gcs [role=tablist], #gcs .bar')]
           .filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.className || e.getAttribute('role'))"""
-        for tab in ("Drive", "Run", "Graph", "Help"):
+        for tab in ("Drive", "Plot", "Run", "Graph", "Help"):
             page.get_by_role("tab", name=tab).click()
             page.wait_for_timeout(500)
             assert page.evaluate(cut) == [], tab

@@ -10,7 +10,7 @@ from services.gcs.actions import Beat, ClickGround, Hello, Join, OpenTab, Point
 from services.gcs.page.words import action_in
 from services.gcs.service import GroundStation
 from tests.services.gcs.scripted import Script, demo_site
-from tests.services.gcs.watches import FakeWatch
+from tests.services.gcs.watches import FakeWatch, LocalWatch
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service_runner import ServiceRunner
 
@@ -85,10 +85,10 @@ class FakePage:
 class Station:
     """The service on a fake page, with scripted vehicles; ``run`` lets simulation and wall time pass alike."""
 
-    def __init__(self, accept=True, site=None):
+    def __init__(self, accept=True, site=None, listens=False):
         self.script = Script(accept=accept)
         self.page = FakePage()
-        self.watch = FakeWatch()
+        self.watch = LocalWatch(self.script.bus) if listens else FakeWatch()
         self.site = site or demo_site()
         self.service = GroundStation(self.site, self.page, self.watch)
         self.shell = ServiceRunner(ServiceInstance(GroundStation, lambda: self.service), self.script.bus)

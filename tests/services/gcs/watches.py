@@ -1,5 +1,6 @@
 """A watch that hears what a test says, and tokens as living services declare them."""
 
+from schemas import topics
 from services.gcs.watch import WatchedMessage
 
 
@@ -28,6 +29,18 @@ class FakeWatch:
 
     def say(self, key, message, boot=1):
         self.heard.append(WatchedMessage(key, message.DESCRIPTOR.full_name, message.SerializeToString(), 0.0, boot))
+
+
+class LocalWatch(FakeWatch):
+    """Hears, while it is on, what is said on a bus inside this process."""
+
+    def __init__(self, bus):
+        super().__init__()
+        bus.subscribe("uvf/**", topics.Qos.STATE, self._hear)
+
+    def _hear(self, sample):
+        if self.on:
+            self.heard.append(WatchedMessage(sample.key, sample.type_name, sample.payload, 0.0, sample.boot, sample.stamp_ns * 1e-9))
 
 
 def service_tokens(name, boot=1, pub=(), sub=(), need=()):

@@ -10,28 +10,15 @@ from schemas.messages import Event
 from services.gcs.actions import OpenTab, Select
 from services.gcs.plot_actions import PlotAdd, PlotHold, PlotPreset, PlotRemove, PlotTopic, PlotWindow
 from services.gcs.state.plot_choice import MOST_SERIES
-from services.gcs.watch import WatchedMessage
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 
 NAV = topics.NAV_STATE.at(UAV)
 
 
-class Watched(Station):
-    """Whatever is said on the bus is heard by the watch too, while it is on."""
-
-    def __init__(self):
-        super().__init__()
-        self.script.bus.subscribe("uvf/**", topics.Qos.STATE, self._hear)
-
-    def _hear(self, sample):
-        if self.watch.on:
-            self.watch.heard.append(WatchedMessage(sample.key, sample.type_name, sample.payload, 0.0, sample.boot, sample.stamp_ns * 1e-9))
-
-
 @pytest.fixture
 def station():
-    station = Watched()
+    station = Station(listens=True)
     station.run(0.5)
     station.press(Select(ME, UAV), OpenTab(ME, "plot"), seconds=0.3)
     return station
