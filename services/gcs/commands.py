@@ -41,6 +41,8 @@ from services.gcs.actions import (
 from services.gcs.browsing import Browsing
 from services.gcs.by_hand import ManualDriving
 from services.gcs.handover import ControlHandover
+from services.gcs.map_actions import OfMap
+from services.gcs.map_orders import MapOrders
 from services.gcs.offers import SOURCE, offer_of
 from services.gcs.orders import OrderBook
 from services.gcs.outbox import Outbox
@@ -68,7 +70,8 @@ class Commander:
         self.by_hand = ManualDriving({n: TeleopCommand(b.max_linear, b.max_angular) for n, b in bodies.items() if b is not None})
         self._browsing = Browsing(model, self.by_hand)
         self._orders = OrderBook(model)
-        self._places = PlaceOrders(model, self._orders, self.by_hand)
+        self._maps = MapOrders(self._orders)
+        self._places = PlaceOrders(model, self._orders, self.by_hand, self._maps)
         self._handover = ControlHandover(model, self.by_hand)
         self._run = RunOrders(self._orders)
         self.planning = Planning(model)
@@ -114,6 +117,8 @@ class Commander:
                 self._aim(t, session, action, out)
             case RunClock() | SetRate() | LaunchMission():
                 self._run.ask(t, session, action, out)
+            case OfMap():
+                self._maps.ask(t, session, action, out)
             case OfPlan():
                 self._plan(t, session, action, out)
 

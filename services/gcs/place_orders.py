@@ -4,6 +4,7 @@ import numpy as np
 
 from schemas.messages import GoalRequest, HomeCommand, Mode, ModeRequest, PreviewRequest, Vector3, VehicleCommandRequest
 from services.gcs.by_hand import ManualDriving
+from services.gcs.map_orders import MapOrders
 from services.gcs.offers import SOURCE, STOPPED
 from services.gcs.orders import OrderBook
 from services.gcs.outbox import Outbox
@@ -19,10 +20,11 @@ OBEYING_PLANNER = (Mode.MODE_MISSION, Mode.MODE_RETURN)
 class PlaceOrders:
     """Turns clicks on the ground into requests."""
 
-    def __init__(self, model: Model, orders: OrderBook, by_hand: ManualDriving) -> None:
+    def __init__(self, model: Model, orders: OrderBook, by_hand: ManualDriving, maps: MapOrders) -> None:
         self._model = model
         self._orders = orders
         self._by_hand = by_hand
+        self._maps = maps
         self._back: dict[str, int] = {}
         self._mode_before: dict[str, int] = {}
 
@@ -47,6 +49,9 @@ class PlaceOrders:
         before, vehicle = session.pointed, self._model.vehicles.get(session.vehicle)
         if point is None or vehicle is None:
             session.pointed = None
+        elif before is not None and before.tool == "here":
+            session.pointed = None
+            self._maps.place(t, session, before, float(np.arctan2(point[1] - before.y, point[0] - before.x)), out)
         elif before is not None and before.tool == "face":
             yaw = float(np.arctan2(point[1] - before.y, point[0] - before.x))
             self._go(t, session, before, yaw, out)

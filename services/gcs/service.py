@@ -31,12 +31,15 @@ from schemas.messages import (
     NavState,
     NavStatus,
     Odometry,
+    PlaceRequest,
     PoseInFrame,
     PosesInFrame,
     PreviewReply,
     PreviewRequest,
     Processes,
+    RelocalizeRequest,
     Reply,
+    SaveMapRequest,
     SetCurrentRequest,
     SimObjects,
     StopCommand,
@@ -125,6 +128,9 @@ class GroundStation(Service):
         preview: list[Answer[PreviewRequest, PreviewReply]] = answers(topics.PREVIEW)
         set_mission: list[Answer[MissionRequest, Reply]] = answers(topics.SET_MISSION)
         current: list[Answer[SetCurrentRequest, Reply]] = answers(topics.SET_CURRENT)
+        save_map: list[Answer[SaveMapRequest, Reply]] = answers(topics.SAVE_MAP)
+        place: list[Answer[PlaceRequest, Reply]] = answers(topics.PLACE)
+        relocalize: list[Answer[RelocalizeRequest, Reply]] = answers(topics.RELOCALIZE)
         clock_request: list[Answer[ClockRequest, Reply]] = answers(topics.CLOCK_REQUEST)
         launch: list[Answer[LaunchRequest, Reply]] = answers(topics.LAUNCH)
 
@@ -142,6 +148,9 @@ class GroundStation(Service):
         preview: list[PreviewRequest] = call(topics.PREVIEW)
         set_mission: list[MissionRequest] = call(topics.SET_MISSION)
         current: list[SetCurrentRequest] = call(topics.SET_CURRENT)
+        save_map: list[SaveMapRequest] = call(topics.SAVE_MAP)
+        place: list[PlaceRequest] = call(topics.PLACE)
+        relocalize: list[RelocalizeRequest] = call(topics.RELOCALIZE)
         clock_request: list[ClockRequest] = call(topics.CLOCK_REQUEST)
         launch: list[LaunchRequest] = call(topics.LAUNCH)
 

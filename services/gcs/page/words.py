@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import msgspec
 
-from services.gcs import actions, planning_actions, plot_actions
+from services.gcs import actions, map_actions, planning_actions, plot_actions
 
 WORDS: Mapping[str, type[actions.PageAction]] = {
     "hello": actions.Hello,
@@ -43,6 +43,8 @@ WORDS: Mapping[str, type[actions.PageAction]] = {
     "plot-window": plot_actions.PlotWindow,
     "plot-hold": plot_actions.PlotHold,
     "plot-preset": plot_actions.PlotPreset,
+    "save-map": map_actions.SaveMap,
+    "relocalize": map_actions.Relocalize,
     "plan-add": planning_actions.PlanAdd,
     "plan-set": planning_actions.PlanSet,
     "plan-move": planning_actions.PlanMove,

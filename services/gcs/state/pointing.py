@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 from schemas.messages import PreviewReply
 
-TOOLS = ("go", "face", "measure", "home")
-"""Send the vehicle there; send it there and click again whither it is to look; measure to the next click; make it the vehicle's home."""
+TOOLS = ("go", "face", "measure", "home", "here")
+"""Send the vehicle there; send it there and click again whither it is to look; measure to the next click; make it the vehicle's home;
+say that it stands there, and click again whither it looks."""
 
 
 @dataclass
@@ -16,7 +17,7 @@ class Pointed:
     y: float
     vehicle: str
     tool: str = ""
-    """What waits for a second click here: face or measure; "" while the menu is open."""
+    """What waits for a second click here: face, here or measure; "" while the menu is open."""
     to: tuple[float, float] | None = None
     """The second place of a measured distance."""
     preview: PreviewReply | None = None

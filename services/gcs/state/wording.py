@@ -15,6 +15,9 @@ from schemas.messages import (
     MissionRequest,
     Mode,
     ModeRequest,
+    PlaceRequest,
+    RelocalizeRequest,
+    SaveMapRequest,
     SetCurrentRequest,
     VehicleCommandRequest,
 )
@@ -40,6 +43,12 @@ def describe(request: Message) -> str:
             return f"simulation rate {request.rate:g}" if request.action == ClockRequest.SET_RATE else f"{action} the simulation"
         case LaunchRequest():
             return f"start mission {request.mission}"
+        case SaveMapRequest():
+            return f"save the map as {request.name}"
+        case PlaceRequest():
+            return f"it stands at ({request.pose.position.x:.1f}, {request.pose.position.y:.1f}) m"
+        case RelocalizeRequest():
+            return "look for it in the whole map"
         case MissionRequest():
             return f"mission of {len(request.mission.items)} items"
         case SetCurrentRequest():

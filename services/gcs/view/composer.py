@@ -20,6 +20,7 @@ from services.gcs.view import (
     fleet,
     graph,
     graph_drawing,
+    map_panel,
     menus,
     plan,
     plot,
@@ -41,8 +42,11 @@ HELP = Path(__file__).with_name("help.html")
 COLOURS: Mapping[str, Colour] = {"/own/way": (150, 160, 175), "/own/drawn": (140, 150, 168), "/own/flown": (232, 74, 214)}
 FAST = ("run", "plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
 EVERY = 2
-"""Steps between two drawings of these, which tell at once; of the rest one is drawn with each step."""
+"""Steps between two drawings of these, which tell at once."""
+SELDOM = 6
+"""Steps between two drawings of the rest, some of which are due with each step."""
 SLOW = (
+    "mapping",
     "plot",
     "fleet",
     "cameras",
@@ -61,7 +65,7 @@ SLOW = (
 )
 OF_TAB: Mapping[str, tuple[str, ...]] = {
     "fly": ("instrument", "picture", "cameras", "facts"),
-    "drive": ("instrument", "picture", "wheel", "cameras", "facts"),
+    "drive": ("instrument", "picture", "wheel", "mapping", "cameras", "facts"),
     "plan": ("plan", "handles"),
     "plot": ("plot",),
     "run": ("run",),
@@ -103,8 +107,9 @@ class Composer:
         return Picture(self._view.nodes(t), self._view.places(), shown)
 
     def _due(self, draws: Mapping[str, Draw], everything: bool) -> dict[str, Html]:
-        turn = SLOW[self._step % len(SLOW)]
-        due = {name for name in draws if everything or name == turn or (name in FAST and self._step % EVERY == 0)}
+        fast = self._step % EVERY == 0
+        slow = {name for i, name in enumerate(SLOW) if (self._step + i) % SELDOM == 0}
+        due = {name for name in draws if everything or name in slow or (fast and name in FAST)}
         return {name: draws[name]() for name in draws if name in due}
 
     def _panel(self, session: BrowserSession, t: float) -> PagePanel:
@@ -151,6 +156,7 @@ class Composer:
                 "instrument": self._once("instrument", v, lambda: facts.instrument(v)),
                 "wheel": lambda: teleoperation.wheel(v, self._by_hand, session.page),
                 "picture": lambda: camera_panel.picture(v, session, t),
+                "mapping": self._once("mapping", v, lambda: map_panel.map_panel(v)),
                 "cameras": lambda: camera_panel.panel(v, session, t),
                 "facts": self._once("facts", v, lambda: facts.facts(v, t)),
                 "plan": lambda: plan.plan_panel(v, session, t),

@@ -7,6 +7,7 @@ from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button
+from services.gcs.view.map_panel import is_localized
 from services.gcs.view.markup import Html, html, joined
 
 
@@ -20,6 +21,8 @@ def menu(model: Model, session: BrowserSession) -> Html:
         return _hung(at.to, _distance(at, at.to))
     if at.tool == "measure":
         return _hung((at.x, at.y), html("<b>Measure</b><span>Click the other end</span>{}", _close()))
+    if at.tool == "here":
+        return _hung((at.x, at.y), html("<b>It stands here</b><span>Click where {} looks now</span>{}", vehicle.name, _close()))
     if at.tool == "face":
         return _hung((at.x, at.y), html("<b>Heading</b><span>Click where {} is to look</span>{}", vehicle.name, _close()))
     where = html("<span class='g-where'><span>x {:.1f} m, y {:.1f} m</span><span>{}</span></span>", at.x, at.y, vehicle.name)
@@ -35,7 +38,8 @@ def _choices(at: Pointed, v: VehicleModel) -> list[Html]:
     face = [] if v.flies else [button("Go here and look …", "point", "face")]
     kinds = (("Add waypoint", "waypoint"), ("Add circle", "orbit")) if v.flies else (("Add waypoint", "waypoint"),)
     add = [button(label, "plan-add", v.name, kind, round(at.x, 2), round(at.y, 2), more=html("data-tab='plan'")) for label, kind in kinds]
-    return [go, *face, *add, button("Measure from here", "point", "measure"), button("Set home here", "point", "home")]
+    here = [button("It stands here and looks …", "point", "here")] if not v.flies and is_localized(v) else []
+    return [go, *face, *here, *add, button("Measure from here", "point", "measure"), button("Set home here", "point", "home")]
 
 
 def _close() -> Html:

@@ -6,7 +6,7 @@ import { fill, on, say } from './link.js';
 const TABS = {
   fly: ['Fly', 'instrument', 'cameras', 'picture', 'facts'],
   plan: ['Plan', 'plan'],
-  drive: ['Drive', 'instrument', 'wheel', 'cameras', 'picture', 'facts'],
+  drive: ['Drive', 'instrument', 'wheel', 'mapping', 'cameras', 'picture', 'facts'],
   plot: ['Plot', 'plot'],
   graph: ['Graph', 'graph', 'wiring', 'topics', 'processes'],
   log: ['Log', 'log'],
