@@ -119,3 +119,21 @@ def test_it_stands_when_the_page_that_drives_is_closed(browser, system):
     with opened(browser, system.page, "/vehicles/burger/0", (700, 500)) as page:
         drive_forward(page, system)
     assert stands_within(system, 1.5)
+
+
+def test_the_graph_hears_the_bus_and_names_who_writes_what(page):
+    page.get_by_role("tab", name="Graph").click()
+    page.get_by_text("services").first.wait_for(timeout=40_000)
+    page.get_by_role("textbox", name="filter").or_(page.get_by_placeholder("filter")).first.fill("nav/pose")
+    row = page.locator("[data-slot=topics] tr", has_text="burger/nav/pose").first
+    row.wait_for(timeout=40_000)
+    assert until(page, lambda: "nobody →" not in row.inner_text() and "/50" in row.inner_text()), row.inner_text()
+
+
+def test_a_number_that_no_panel_shows_is_plotted(page):
+    page.get_by_role("button", name="Select milvus").click()
+    page.get_by_role("tab", name="Plot").click()
+    page.get_by_label("Topic to plot from").select_option("uvf/milvus/sensor/imu")
+    page.get_by_role("button", name="+ specific_force.z [m/s^2]").click()
+    points = "() => (document.querySelector('.g-curve')?.getAttribute('d') || '').split('L').length"
+    assert until(page, lambda: page.evaluate(points) > 20), page.locator(".g-legend").inner_text()
