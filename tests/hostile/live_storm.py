@@ -209,7 +209,7 @@ class Storm:
         self.sent["MAVLink", "UDP", what] += 1
 
     def _to_the_page(self):
-        ids = [i for i in self.browser.elements if i != self.browser.button("STOP ALL")]
+        ids = list(self.browser.elements)
         payloads = [nonsense(self._dice, [*ids, "root", ""]) for _ in range(20)]
         asyncio.run(_join_and_send(self.system.page, payloads))
         self.sent["page", "websocket", "nonsense"] += len(payloads)
