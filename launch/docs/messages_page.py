@@ -4,9 +4,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from uvf.models.scenario import ROOT
+from schemas.units import BLOCK, FIELD, PROTO
 
-PROTO = ROOT / "schemas" / "proto" / "uvf" / "v1"
 HEAD = """# Messages
 
 Generated from `schemas/proto/uvf/v1/*.proto` by `python -m launch.docs.pages`; do not edit.
@@ -14,8 +13,6 @@ Generated from `schemas/proto/uvf/v1/*.proto` by `python -m launch.docs.pages`; 
 Types that begin with `foxglove.` are those of the package foxglove-schemas-protobuf, described in
 [Foxglove's documentation](https://docs.foxglove.dev/docs/sdk/schemas). Which topic carries which type stands in [topics](topics.md).
 """
-BLOCK = re.compile(r"^(\s*)(message|enum|oneof) (\w+) \{")
-FIELD = re.compile(r"^\s*(?:(repeated|optional) )?([\w.]+) (\w+) = \d+[^;]*;\s*(?://\s*(.*))?$")
 VALUE = re.compile(r"^\s*([A-Z]\w*) = (\d+);\s*(?://\s*(.*))?$")
 
 

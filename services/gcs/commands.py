@@ -132,8 +132,7 @@ class Commander:
                 why = f"this page shows what is {session.behind(t):.0f} s old: wait until it is live"
                 self._orders.refuse(t, vehicle, describe(offer.request), why)
                 return
-            if not session.confirms(name, key, t):
-                session.to_confirm = (name, key, t)
+            if not session.confirm(name, key, t):
                 return
         session.to_confirm = None
         if self._orders.begin(t, session, name, offer.request, offer.why_not) is not None:
@@ -170,8 +169,7 @@ class Commander:
             case PlanUpload():
                 why = vehicle.outlook.fault if vehicle.outlook is not None else ""
                 risky = not why and vehicle.status is not None and vehicle.status.armed and vehicle.status.mode == Mode.MODE_MISSION
-                if risky and not session.confirms(vehicle.name, "upload", t):
-                    session.to_confirm = (vehicle.name, "upload", t)
+                if risky and not session.confirm(vehicle.name, "upload", t):
                     return
                 session.to_confirm = None
                 request: Message = self.planning.upload(vehicle)
@@ -187,8 +185,8 @@ class Commander:
                 return
         if self._orders.begin(t, session, vehicle.name, request, why) is not None:
             out.call(name, vehicle.name, request)
-        elif isinstance(request, MissionRequest):
-            self.planning.refused(vehicle)
+            if isinstance(request, MissionRequest):
+                self.planning.sent(vehicle)
 
     def _stop(self, t: float, session: BrowserSession, engaged: bool, out: Outbox) -> None:
         if engaged:

@@ -49,12 +49,10 @@ class PlaceOrders:
         before, vehicle = session.pointed, self._model.vehicles.get(session.vehicle)
         if point is None or vehicle is None:
             session.pointed = None
-        elif before is not None and before.tool == "here":
+        elif before is not None and before.tool in ("here", "face"):
             session.pointed = None
-            self._maps.place(t, session, before, float(np.arctan2(point[1] - before.y, point[0] - before.x)), out)
-        elif before is not None and before.tool == "face":
             yaw = float(np.arctan2(point[1] - before.y, point[0] - before.x))
-            self._go(t, session, before, yaw, out)
+            (self._maps.place if before.tool == "here" else self._go)(t, session, before, yaw, out)
         elif before is not None and before.tool == "measure":
             before.to = point
         else:

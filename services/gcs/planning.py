@@ -34,7 +34,7 @@ class Planning:
         self._model = model
         self._taken: dict[str, Mission | None] = {}
         self._flights: dict[str, PreviewFlight] = {}
-        self._waits: dict[str, tuple[int, int]] = {}
+        self._waits: dict[str, int] = {}
 
     def draft(self, v: VehicleModel) -> PlanDraft:
         """The draft of a vehicle; while nobody has touched it, it is what is in force there."""
@@ -75,10 +75,12 @@ class Planning:
 
     def upload(self, v: VehicleModel) -> MissionRequest:
         """The request that puts the draft into force."""
-        items = [_as_sent(item, v) for item in self.draft(v).items]
-        v.draft.touched = False  # what is accepted comes back as the mission in force
+        return MissionRequest(mission=Mission(items=[_as_sent(item) for item in self.draft(v).items]), source=SOURCE)
+
+    def sent(self, v: VehicleModel) -> None:
+        """The draft is on its way: what is accepted comes back as the mission in force."""
+        v.draft.touched = False
         self._taken[v.name] = v.mission
-        return MissionRequest(mission=Mission(items=items), source=SOURCE)
 
     def refused(self, v: VehicleModel) -> None:
         """The upload has been refused: the draft is not on the vehicle."""
@@ -99,12 +101,11 @@ class Planning:
         draft = self.draft(v)
         if v.outlook is None or v.outlook.edits != draft.edits:
             v.outlook = outlook_of(draft, self._params(v))
-            self._waits[v.name] = (draft.edits, SOON)
+            self._waits[v.name] = SOON
             self._flights.pop(v.name, None)
-        edits, left = self._waits[v.name]
-        if left > 0:
-            self._waits[v.name] = (edits, left - 1)
-        elif left == 0:
+        if self._waits[v.name] > 0:
+            self._waits[v.name] -= 1
+        else:
             self._fly(v, v.outlook)
 
     def _params(self, v: VehicleModel) -> AirParams | None:
@@ -118,10 +119,10 @@ class Planning:
 
     def _fly(self, v: VehicleModel, outlook: PlanOutlook) -> None:
         """Only what could be flown is, and only to its end."""
-        params = self._params(v)
-        if params is None or outlook.fault or outlook.is_flown:
+        if outlook.fault or outlook.is_flown:
             return
         if v.name not in self._flights:
+            params = self._params(v) or AirParams()
             wind = (v.nav.wind.y, v.nav.wind.x) if v.nav is not None else (0.0, 0.0)
             self._flights[v.name] = PreviewFlight(plan_items(v.draft.items), params, wind)
         flight = self._flights[v.name]
@@ -129,7 +130,7 @@ class Planning:
         outlook.show(flight.so_far)
 
 
-def _as_sent(item: MissionItem, v: VehicleModel) -> MissionItem:
+def _as_sent(item: MissionItem) -> MissionItem:
     sent = MissionItem()
     sent.CopyFrom(item)
     sent.ClearField("origin")

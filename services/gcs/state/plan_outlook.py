@@ -30,6 +30,8 @@ class PlanOutlook:
     """(what, why) of what is flown otherwise than it is drawn."""
     line: Floats = field(default_factory=lambda: np.zeros((0, 3)))
     """(n, 3) m, world: the path that will be flown, as far as it has been worked out."""
+    s: Floats = field(default_factory=lambda: np.zeros(0))
+    """(n,) m over ground from its first point."""
     passed: tuple[tuple[int, float, float], ...] = ()
     """(item, distance [m], height [m]) where each item is done."""
     length: float = 0.0
@@ -44,7 +46,8 @@ class PlanOutlook:
         """Takes what has been flown ahead by now."""
         self.line = flown.points[:, (1, 0, 2)]
         self.passed = tuple(places_passed(flown))
-        self.length = float(flown.s[-1]) if len(flown.s) else 0.0
+        self.s = flown.s
+        self.length = float(self.s[-1]) if len(self.s) else 0.0
         self.time = float(flown.t[-1]) if len(flown.t) else 0.0
         self.goes_on = flown.goes_on
 

@@ -11,6 +11,7 @@ from google.protobuf.message import Message
 from schemas.units import units
 from uvf.maths.rotations import to_euler
 from uvf.runtime.messages.convert import wxyz
+from uvf.runtime.messages.validation import is_repeated
 
 DEEPEST = 4
 MOST_FIELDS = 120
@@ -48,7 +49,7 @@ def _walk(kind: Descriptor, before: str, unit: str, depth: int) -> Iterator[Plot
     yield from (PlotField(f"{before}{name}", "deg" if name in ANGLES else unit) for name in DERIVED.get(kind.full_name, ()))
     for field in kind.fields:
         mine = units().get((kind.full_name, field.name), unit)
-        if _repeats(field):
+        if is_repeated(field):
             continue
         if field.cpp_type in NUMBERS:
             yield PlotField(before + field.name, mine)
@@ -56,14 +57,9 @@ def _walk(kind: Descriptor, before: str, unit: str, depth: int) -> Iterator[Plot
             yield from _walk(inner, f"{before}{field.name}.", mine, depth + 1)
 
 
-def _repeats(field: Any) -> bool:
-    """Any: the stubs are of a newer release, which calls it otherwise."""
-    return bool(field.label == FieldDescriptor.LABEL_REPEATED)
-
-
 def repeated_fields(message: Message) -> tuple[PlotField, ...]:
     """The numbers in the repeated fields of a message, as ``joints[left_wheel].position``."""
-    found = [one for field in message.DESCRIPTOR.fields if _repeats(field) for one in _of_items(message, field)]
+    found = [one for field in message.DESCRIPTOR.fields if is_repeated(field) for one in _of_items(message, field)]
     return tuple(found[:MOST_FIELDS])
 
 

@@ -68,6 +68,12 @@ class BrowserSession:
     graph: GraphChoice = field(default_factory=GraphChoice)
     """What it shows of the graph of services and topics."""
 
+    def confirm(self, vehicle: str, key: str, t: float) -> bool:
+        """Whether this click at ``t`` [s, wall] is the second one for a command; a first one is noted."""
+        sure = self.confirms(vehicle, key, t)
+        self.to_confirm = None if sure else (vehicle, key, t)
+        return sure
+
     def confirms(self, vehicle: str, key: str, t: float) -> bool:
         """Whether a second click at ``t`` [s, wall] would carry out a risky command."""
         asked = self.to_confirm

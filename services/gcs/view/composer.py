@@ -74,7 +74,6 @@ OF_TAB: Mapping[str, tuple[str, ...]] = {
     "help": ("help",),
 }
 """What is drawn of a tab while it is open."""
-IN_TABS = frozenset(name for names in OF_TAB.values() for name in names)
 
 Draw = Callable[[], Html]
 OnShow = tuple[str, str, GraphChoice]
@@ -89,6 +88,9 @@ class Composer:
         self._by_hand = by_hand
         self._view = SceneView(model)
         self._overview = Overview(model)
+        self._help = trusted(HELP.read_text(encoding="utf-8"))
+        self._fitted: dict[int, tuple[float, Mapping[str, CameraView]]] = {}
+        """Page -> the shape of its view, and the named views for it."""
         self._own: dict[int, tuple[OnShow, dict[str, Html]]] = {}
         """Page -> what it showed, and the words."""
         self._drawn: dict[tuple[str, str], Html] = {}
@@ -101,6 +103,7 @@ class Composer:
         self._drawn.clear()
         sessions = self._model.sessions
         self._own = {page: own for page, own in self._own.items() if page in sessions}
+        self._fitted = {page: fitted for page, fitted in self._fitted.items() if page in sessions}
         self._previews = {page: made for page, made in self._previews.items() if page in sessions}
         shown = {page: self._panel(session, t) for page, session in sessions.items()}
         self._step += 1
@@ -141,7 +144,7 @@ class Composer:
             "processes": self._once("processes", None, lambda: records.processes(model, t)),
             "run": lambda: run_panel.run_panel(model, session, t),
             "log": self._once("log", None, lambda: records.event_log(model.log)),
-            "help": lambda: trusted(HELP.read_text(encoding="utf-8")),
+            "help": lambda: self._help,
         }
         if v is not None:
             always |= {
@@ -188,8 +191,12 @@ class Composer:
 
     def _camera(self, session: BrowserSession) -> CameraView | None:
         """None while somebody has turned the view, or follows a vehicle, which the page does itself."""
-        views = cameras(self._model.site, session.aspect or ASPECT)
-        return None if session.touched else views.get(session.view)
+        if session.touched:
+            return None
+        aspect = session.aspect or ASPECT
+        if session.page not in self._fitted or self._fitted[session.page][0] != aspect:
+            self._fitted[session.page] = (aspect, cameras(self._model.site, aspect))
+        return self._fitted[session.page][1].get(session.view)
 
     def _preview(self, session: BrowserSession) -> dict[str, Node]:
         """What only this page sees: the way to the place that it has clicked, and the mission that is drawn in its tab Plan."""

@@ -35,7 +35,7 @@ def plan_panel(v: VehicleModel, session: BrowserSession, t: float) -> Html:
         _table(v, draft),
         _adding(v),
         _remarks(outlook),
-        profile(outlook, v) if v.flies else html(""),
+        profile(outlook) if v.flies else html(""),
     )
 
 

@@ -1,33 +1,24 @@
 """The height of a drawn mission over the distance flown, as SVG."""
 
-from math import ceil
-
 import numpy as np
 from numpy.typing import NDArray
 
 from services.gcs.state.plan_outlook import PlanOutlook
-from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.markup import Html, html, joined
+from uvf.maths.decimation import round_ticks
 
 Floats = NDArray[np.float64]
 
 WIDTH, HEIGHT = 340.0, 130.0
 LEFT, RIGHT, TOP, BOTTOM = 34.0, 8.0, 10.0, 22.0
-STEPS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000)
 MOST_POINTS = 200
 
 
-def step_of(span: float, most: int) -> float:
-    """The smallest of the round steps that divides a span into no more parts than ``most``."""
-    return float(next((step for step in STEPS if span / step <= most), STEPS[-1]))
-
-
-def profile(outlook: PlanOutlook, v: VehicleModel) -> Html:
+def profile(outlook: PlanOutlook) -> Html:
     """The profile; empty while there is nothing to show."""
     line = outlook.line
     if len(line) < 2 or outlook.length <= 0:
         return html("")
-    s = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))))
     top = max(float(line[:, 2].max()) * 1.15, 10.0)
     floor = min(float(line[:, 2].min()), 0.0)
     keep = np.unique(np.linspace(0, len(line) - 1, min(MOST_POINTS, len(line))).astype(int))
@@ -36,7 +27,7 @@ def profile(outlook: PlanOutlook, v: VehicleModel) -> Html:
         x = LEFT + distance / outlook.length * (WIDTH - LEFT - RIGHT)
         return x, HEIGHT - BOTTOM - (height - floor) / (top - floor) * (HEIGHT - TOP - BOTTOM)
 
-    points = " ".join("{:.1f},{:.1f}".format(*at(float(s[i]), float(line[i, 2]))) for i in keep)
+    points = " ".join("{:.1f},{:.1f}".format(*at(float(outlook.s[i]), float(line[i, 2]))) for i in keep)
     marks = joined(_mark(i, *at(distance, height)) for i, distance, height in outlook.passed)
     label = f"height over distance: {line[:, 2].min():.0f} to {line[:, 2].max():.0f} m over {outlook.length:.0f} m"
     return html(
@@ -57,10 +48,8 @@ def _mark(i: int, x: float, y: float) -> Html:
 
 
 def _heights(floor: float, top: float, ground: float) -> Html:
-    step = step_of(top - floor, 4)
-    rows = [step * k for k in range(ceil(floor / step), int(top // step) + 1)]
     lines = []
-    for height in rows:
+    for height in round_ticks(floor, top, 4):
         y = HEIGHT - BOTTOM - (height - floor) / (top - floor) * (HEIGHT - TOP - BOTTOM)
         lines.append(
             html(
@@ -78,8 +67,7 @@ def _heights(floor: float, top: float, ground: float) -> Html:
 
 
 def _distances(length: float) -> Html:
-    step = step_of(length, 5)
     return joined(
-        html("<text x='{:.1f}' y='{}' class='g-mid'>{:.0f}</text>", LEFT + k * step / length * (WIDTH - LEFT - RIGHT), HEIGHT - 6, k * step)
-        for k in range(int(length // step) + 1)
+        html("<text x='{:.1f}' y='{}' class='g-mid'>{:.0f}</text>", LEFT + tick / length * (WIDTH - LEFT - RIGHT), HEIGHT - 6, tick)
+        for tick in round_ticks(0.0, length, 5)
     )

@@ -31,7 +31,7 @@ setInterval(steer, EVERY);
 const hold = (by, button) => { held.set(by, button.dataset.steer.split(' ')); steer(); };
 const release = by => { const was = held.delete(by); if (was) steer(); return was; };
 const releaseAll = () => { if (held.size) { held.clear(); steer(); } };
-const typing = event => event.target.closest?.('input,textarea,select,[contenteditable]');
+export const typing = event => event.target.closest?.('input,textarea,select,[contenteditable]');
 
 window.addEventListener('keydown', event => {
   const panel = wheel();

@@ -1,9 +1,9 @@
 // Keys of the whole page; those for driving by hand are in driving.js, and come first.
 
+import { typing } from './driving.js';
 import { say } from './link.js';
 
 const VIEWS = { f: 'Follow', t: 'Top', Home: 'All' };
-const typing = event => event.target.closest?.('input,textarea,select,[contenteditable]');
 
 window.addEventListener('keydown', event => {
   if (event.key === 'Escape' && event.shiftKey) {

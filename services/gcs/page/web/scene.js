@@ -118,7 +118,7 @@ function show(card, angle, [x, y], away) {
   const { name } = card.dataset;
   let sign = [...signs.children].find(sign => sign.dataset.name === name);
   if (!sign) {
-    sign = Object.assign(document.createElement('button'), { type: 'button', className: 'g-sign', title: `Follow ${name}` });
+    sign = Object.assign(document.createElement('button'), { type: 'button', className: 'g-sign', title: `Bring ${name} into view` });
     sign.dataset.name = name;
     sign.append(Object.assign(document.createElement('i'), { textContent: '➤' }), document.createElement('span'));
     signs.append(sign);

@@ -105,7 +105,7 @@ def _anything(_: Any) -> bool:
 
 def _numbers(type_: Descriptor) -> Test | None:
     """All single floats of a message at once."""
-    names = [f.name for f in type_.fields if f.type in _FLOATS and not _is_repeated(f) and not _is_open(f)]
+    names = [f.name for f in type_.fields if f.type in _FLOATS and not is_repeated(f) and not _is_open(f)]
     if not names:
         return None
     values = attrgetter(*names, names[0])  # one name twice: a tuple even of one
@@ -116,7 +116,7 @@ def _field_test(field: FieldDescriptor) -> Test | None:
     """Of one field, unless there is nothing to look at."""
     one = _value_test(field)
     get = attrgetter(field.name)
-    if not _is_repeated(field):
+    if not is_repeated(field):
         is_told = field.type in _FLOATS and field.full_name not in MOST  # by ``_numbers``
         return None if one is None or is_told else lambda message: one(get(message))
     most = LENGTHS.get(field.full_name, ENTRIES)
@@ -134,7 +134,7 @@ def _value_test(field: FieldDescriptor) -> Test | None:
         whole = re.compile(PATTERNS[field.full_name]).fullmatch
         return lambda text: whole(text) is not None
     if field.type == FieldDescriptor.TYPE_STRING:
-        longest = LENGTHS.get(field.full_name, TEXT) if not _is_repeated(field) else TEXT
+        longest = LENGTHS.get(field.full_name, TEXT) if not is_repeated(field) else TEXT
         return lambda text: is_text(text, longest)
     if field.full_name in BYTES:
         size = BYTES[field.full_name]
@@ -165,14 +165,14 @@ def _errors(message: Message, place: str) -> Iterator[str]:
     for field in fields:
         name, value = f"{place}{field.name}", getattr(message, field.name)
         test = _value_test(field)
-        if _is_repeated(field) and len(value) > LENGTHS.get(field.full_name, ENTRIES):
+        if is_repeated(field) and len(value) > LENGTHS.get(field.full_name, ENTRIES):
             yield f"{name}: {len(value)} entries, {LENGTHS.get(field.full_name, ENTRIES)} at most"
         elif test is None or _is_open(field):
             continue
         elif _is_map(field):
             yield from (f"{name}: {_described(field, key)}" for key in value if not is_text(key))
         else:
-            entries = [(f"{name}[{i}]", entry) for i, entry in enumerate(value)] if _is_repeated(field) else [(name, value)]
+            entries = [(f"{name}[{i}]", entry) for i, entry in enumerate(value)] if is_repeated(field) else [(name, value)]
             for where, entry in entries:
                 if not test(entry):
                     inner = list(_errors(entry, f"{where}.")) if _is_parent(entry) else []
@@ -219,5 +219,6 @@ def _is_map(field: FieldDescriptor) -> bool:
     return bool(field.message_type and field.message_type.GetOptions().map_entry)
 
 
-def _is_repeated(field: FieldDescriptor) -> bool:
-    return bool(field.label == FieldDescriptor.LABEL_REPEATED)  # type: ignore[attr-defined]  # the stubs are of a newer release
+def is_repeated(field: Any) -> bool:
+    """Whether a field of a message type has any number of values."""
+    return bool(field.label == FieldDescriptor.LABEL_REPEATED)  # Any: the stubs are of a newer release
