@@ -45,6 +45,7 @@ def test_a_hidden_track_leaves_the_screen(page, station):
 
 def test_a_click_on_the_floor_is_a_goal_there(page, station):
     wanted = (3.9, 4.55)
+    view_at_rest(page)
     page.mouse.click(*on_screen(page, (*wanted, 0.0)))
     page.get_by_text("4.2 m, 9 s, 0.30 m clear").wait_for(timeout=20_000)
     assert goals(station) == []
