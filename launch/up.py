@@ -1,5 +1,6 @@
 """``uvf up``: every process of a mission, supervised, until Ctrl-C."""
 
+import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -18,6 +19,7 @@ from uvf.models.scenario import load_scenario
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.interface import Query, Sample
 from uvf.runtime.bus.wire import Malformed, decode, guarded
+from uvf.runtime.log.folder import LOG_FOLDER
 from uvf.runtime.messages.refusals import Refusals
 
 ROUTER_PATIENCE = 10.0  # s
@@ -82,6 +84,7 @@ class RunningMission:
         self._wanted = wanted
         self._say = say
         self._folder = folder
+        os.environ[LOG_FOLDER] = str(folder.resolve())  # for the processes that the launcher starts
         self.launcher = Launcher("launcher", say)
         self._moving_since: float | None = None
         self._begun = time.monotonic()

@@ -1,5 +1,6 @@
 """``uvf log``: recorded runs."""
 
+from math import inf
 from pathlib import Path
 from typing import Annotated
 
@@ -53,6 +54,38 @@ def log_echo(
     with bad_input_is_one_line():
         for line in message_lines(log, key, count):
             typer.echo(line)
+
+
+FromOption = Annotated[float, typer.Option("--from", min=0.0, help="Simulation time [s] at which it begins.")]
+ToOption = Annotated[float, typer.Option("--to", min=0.0, help="Simulation time [s] at which it ends.")]
+
+
+@log_app.command("cut")
+def log_cut(
+    log: RunArgument,
+    begin: FromOption = 0.0,
+    end: ToOption = inf,
+    out: Annotated[Path | None, typer.Option(help="By default <log>-part.mcap.")] = None,
+) -> None:
+    """Save a part of a log, or of a run that is still being recorded, as a log of its own."""
+    from launch.commands.log_parts import cut_log
+
+    with bad_input_is_one_line():
+        cut_log(log, begin, end, out)
+
+
+@log_app.command("page")
+def log_page(
+    log: RunArgument,
+    begin: FromOption = 0.0,
+    end: ToOption = inf,
+    out: Annotated[Path | None, typer.Option(help="By default <log>.html.")] = None,
+) -> None:
+    """Make a page of a log, or of a part of it, that plays in any browser: one file, without a server."""
+    from launch.commands.log_parts import make_page
+
+    with bad_input_is_one_line():
+        make_page(log, begin, end, out)
 
 
 @log_app.command("recover")

@@ -5,7 +5,6 @@ from itertools import islice
 from pathlib import Path
 
 from launch.commands.topic import full_key, sample_text
-from launch.flights.history import logs_of
 from launch.scoring.last_words import event_text
 from schemas import topics
 from schemas.messages import Event
@@ -13,6 +12,7 @@ from schemas.topics import SYSTEM
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.interface import Sample, matches
 from uvf.runtime.bus.wire import Malformed, decode_sample
+from uvf.runtime.log.folder import logs_of
 from uvf.runtime.log.reading import log_keys, read_log
 from uvf.runtime.messages.validation import escaped
 

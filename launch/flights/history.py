@@ -156,16 +156,6 @@ class History:
         return motion(rows) if len(rows) > 1 else None
 
 
-def logs_of(run: Path) -> list[Path]:
-    """The files of a run's folder in their order, or the one log that is named. Raises BadInput."""
-    if not run.is_dir():
-        return [run]
-    found = sorted(run.glob("log-*.mcap"), key=lambda p: (len(p.name), p.name))
-    if not found:
-        raise BadInput(f"{run}: no log-*.mcap in this folder: name the folder of a run or a log")
-    return found
-
-
 def histories(logs: list[Path]) -> dict[str, History]:
     """The history of each vehicle, sorted by name. A file that was cut off is read as far as it is whole. Raises BadInput."""
     found: dict[str, History] = {}

@@ -5,9 +5,10 @@ from pathlib import Path
 from rich.table import Table
 
 from launch.flights.figures import figures
-from launch.flights.history import History, histories, logs_of
+from launch.flights.history import History, histories
 from launch.flights.page import draw
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.log.folder import logs_of
 
 FOLDER = "report"
 

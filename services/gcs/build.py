@@ -2,10 +2,12 @@
 
 import sys
 
+from services.gcs.export import LogExporter, NoExporter
 from services.gcs.service import GroundStation
 from uvf.models.scenario import Scenario
 from uvf.runtime.bus.address import address_from, router_from
 from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.log.folder import log_folder
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
@@ -17,9 +19,11 @@ def build(site: Scenario) -> list[ServiceInstance]:
         from services.gcs.view.cameras import cameras
         from services.gcs.zenoh_watch import ZenohWatch
 
-        page = ViserPage(address, next(iter(cameras(site).values())))
+        folder = log_folder()
+        exporter = LogExporter(folder) if folder is not None else NoExporter()
+        page = ViserPage(address, next(iter(cameras(site).values())), exporter.files)
         if address.token:
             sys.stderr.write(f"gcs: the page, for those who have its token: {address.url}\n")
-        return GroundStation(site, page, ZenohWatch(router_from()))
+        return GroundStation(site, page, ZenohWatch(router_from()), exporter)
 
     return [ServiceInstance(GroundStation, make, writes_for=tuple(site.members))]

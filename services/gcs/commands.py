@@ -54,17 +54,23 @@ from services.gcs.state.control import called
 from services.gcs.state.session import OLD_AFTER, BrowserSession
 from services.gcs.state.state import Model
 from services.gcs.state.wording import GIMBAL_MODES, describe
+from services.gcs.time_actions import OfTime
+from services.gcs.time_travel import TimeTravel
 from uvf.control.teleop_drive import SCALINGS, TeleopCommand
 from uvf.runtime.contract.service import Answer
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.state.stop_all import StopVoice
 
+ALSO_IN_THE_PAST = (OfTime, StopAll, AnswerControl, LeaveWheel)
+"""What a page that shows the past may ask for."""
+
 
 class Commander:
     """Turns actions into requests, and follows each until it is answered."""
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Model, time: TimeTravel) -> None:
         self._model = model
+        self.time = time
         self._voice = StopVoice(SOURCE)
         bodies = {v.name: v.member.file.ground for v in model.vehicles.values()}
         self.by_hand = ManualDriving({n: TeleopCommand(b.max_linear, b.max_angular) for n, b in bodies.items() if b is not None})
@@ -92,7 +98,15 @@ class Commander:
         return out
 
     def _heed(self, t: float, session: BrowserSession, action: PageAction, out: Outbox) -> None:
+        if session.past is not None and not isinstance(action, ALSO_IN_THE_PAST):
+            if isinstance(action, Command):
+                self._orders.refuse(t, self._model.vehicles.get(action.vehicle), action.key, "this page shows the past: press LIVE first")
+            return
         match action:
+            case OfTime():
+                self.time.ask(t, session, action)
+                if session.past is not None:
+                    self.by_hand.let_go(t, session.page)
             case StopAll():
                 self._stop(t, session, True, out)
             case ReleaseStop():

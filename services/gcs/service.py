@@ -47,11 +47,16 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.gcs.commands import Commander
+from services.gcs.export import Exporter
 from services.gcs.listening import BusListening
 from services.gcs.offers import SOURCE
+from services.gcs.state import past
+from services.gcs.state.history import History
 from services.gcs.state.state import Model
+from services.gcs.time_travel import TimeTravel
 from services.gcs.view.composer import Composer
 from services.gcs.view.drawing import Page
+from services.gcs.view.timeline import TimeBar
 from services.gcs.watch import BusWatch
 from uvf.models.scenario import Scenario
 from uvf.runtime.contract.declaration import Reads, Writes, answers, call, each_vehicle, every, optional, stop_all, topic
@@ -154,24 +159,39 @@ class GroundStation(Service):
         clock_request: list[ClockRequest] = call(topics.CLOCK_REQUEST)
         launch: list[LaunchRequest] = call(topics.LAUNCH)
 
-    def __init__(self, site: Scenario, page: Page, watch: BusWatch) -> None:
+    def __init__(self, site: Scenario, page: Page, watch: BusWatch, exporter: Exporter) -> None:
         self._page = page
         self._model = Model(site)
-        self._commander = Commander(self._model)
+        self._exporter = exporter
+        self._history = History()
+        self._logged = 0
+        time = TimeTravel(self._model, self._history, exporter)
+        self._commander = Commander(self._model, time)
         self._listening = BusListening(self._model, watch)
-        self._composer = Composer(self._model, self._commander.by_hand)
+        self._composer = Composer(self._model, self._commander.by_hand, TimeBar(self._history, exporter, time.models))
 
     def step(self, t: float, now: Inputs) -> Outputs:
         """One refresh of the page at ``t`` [s, wall]."""
         newest: Mapping[str, Mapping[str, Message]] = {name: getattr(now, name) for name in NEWEST}
         self._hear_system(t, now.clock, now.processes, now.health)
         self._hear_others(t, now.external, now.stop, (now.objects, now.aircraft), now.truth)
+        self._keep(t, now, newest)
         return self._act(t, newest, now.events, [one for name in self.calls for one in getattr(now, name)])
 
     def _hear_system(self, t: float, clock: Clock | None, processes: Sequence[Processes], health: Sequence[Health]) -> None:
         self._model.hear_clock(t, clock)
         self._model.processes.hear(t, processes)
         self._model.processes.hear_health(t, health)
+
+    def _keep(self, t: float, now: Inputs, newest: Mapping[str, Mapping[str, Message]]) -> None:
+        """For those who look back."""
+        for what, messages in newest.items():
+            self._history.hear(t, what, messages)
+        self._history.hear(t, past.EXTERNAL, now.external)
+        alone = {(past.CLOCK, ""): now.clock, (past.OBJECTS, "ground"): now.objects, (past.OBJECTS, "air"): now.aircraft}
+        for (what, name), message in alone.items():
+            if message is not None:
+                self._history.hear(t, what, {name: message})
 
     def _hear_others(
         self,
@@ -190,11 +210,17 @@ class GroundStation(Service):
     ) -> Outputs:
         """Takes in what the vehicles say, does what people have asked on the page, and shows how things stand."""
         self._model.hear_newest(t, newest, events)
+        for v in self._model.vehicles.values():
+            if v.place is not None:
+                self._history.go(t, v.name, v.place.position, v.track.spacing)
         self._commander.hear(t, answers)
         out = self._commander.act(t, self._page.actions())
         self._commander.expire(t)
         self._commander.planning.advance()
         self._listening.step(t)
+        self._history.note(t, self._model.log.since(self._logged))
+        self._logged = self._model.log.count
+        self._commander.time.step(t)
         self._page.show(self._composer.picture(t))
         outputs = self.Outputs()
         outputs.update(out.said())
@@ -203,4 +229,5 @@ class GroundStation(Service):
     def close(self) -> None:
         """Stops the page's server and the watch."""
         self._listening.close()
+        self._exporter.close()
         self._page.close()

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from services.gcs.export import NoExporter
 from services.gcs.page.viser_page import ViserPage
 from services.gcs.service import GroundStation
 from services.gcs.view.cameras import cameras
@@ -39,8 +40,8 @@ class LiveStation:
     def __init__(self):
         site, self.port = with_eyes(demo_site()), free_port()
         self.script = Script()
-        self.page = ViserPage(Address(port=self.port), next(iter(cameras(site).values())))
-        self.service = GroundStation(site, self.page, LocalWatch(self.script.bus))
+        self.page = ViserPage(Address(port=self.port), next(iter(cameras(site).values())), {})
+        self.service = GroundStation(site, self.page, LocalWatch(self.script.bus), NoExporter())
         self.shell = ServiceRunner(ServiceInstance(GroundStation, lambda: self.service), self.script.bus)
         self.moving = self.living = True
         self.t = 0.0

@@ -9,13 +9,14 @@ import secrets
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from http.cookies import CookieError, SimpleCookie
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from services.gcs.page.viser_assets import Asset
+from services.gcs.page.viser_assets import SAFE, Asset
 from uvf.runtime.bus.address import is_loopback
 
 COOKIE = "gcs"
@@ -29,6 +30,8 @@ class Guard:
     token: str = ""
     files: Mapping[str, Asset] = field(default_factory=dict)
     """What is served besides viser's own, by path."""
+    downloads: Mapping[str, Path] = field(default_factory=dict)
+    """Files that may be taken away, by path."""
     health: Callable[[], bytes] = field(default=lambda: b'{"status": "ok"}')
 
     def refuses(self, path: str, headers: Mapping[str, str]) -> str:
@@ -67,6 +70,9 @@ class Guard:
         asset = self.files.get(urlsplit(path).path) if is_page else None
         if asset is not None:
             return _response(http.HTTPStatus.OK, *asset.answer(headers.get("Accept-Encoding", "")))
+        file = self.downloads.get(urlsplit(path).path) if is_page else None
+        if file is not None:
+            return _download(file)
         return None
 
     def wrap(self, process_request: Callable[..., Any] | None) -> Callable[[Any, Request], Any]:
@@ -91,6 +97,16 @@ def _cookie(header: str) -> str:
     except CookieError:
         return ""
     return morsel.value if morsel is not None else ""
+
+
+def _download(file: Path) -> Response:
+    """A file to be kept, which no browser opens by itself."""
+    try:
+        body = file.read_bytes()
+    except OSError:
+        return _response(http.HTTPStatus.NOT_FOUND, b"404: there is another file by now\n", {"Content-Type": "text/plain"})
+    about = {"Content-Type": "application/octet-stream", "Content-Disposition": f'attachment; filename="{file.name}"', **SAFE}
+    return _response(http.HTTPStatus.OK, body, about)
 
 
 def _response(status: http.HTTPStatus, body: bytes, headers: Mapping[str, str]) -> Response:

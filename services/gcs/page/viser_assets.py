@@ -10,7 +10,7 @@ import viser
 WEB = Path(__file__).with_name("web")
 VISER_PAGE = Path(viser.__file__).parent / "client/build/index.html"
 TYPES = {".css": "text/css; charset=utf-8", ".js": "text/javascript; charset=utf-8", ".html": "text/html; charset=utf-8"}
-STYLES = ("theme.css", "layout.css", "parts.css", "graph.css", "plot.css")
+STYLES = ("theme.css", "layout.css", "parts.css", "graph.css", "plot.css", "time.css")
 SCRIPT = "main.js"
 SAFE = {
     "Cache-Control": "no-cache",

@@ -3,6 +3,8 @@
 import contextlib
 import io
 import queue
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import viser
@@ -12,7 +14,7 @@ from services.gcs.page.viser_ground import light
 from services.gcs.page.viser_panel import ViserPanel
 from services.gcs.page.viser_scene import ViserScene
 from services.gcs.page.viser_server import guarded_server
-from services.gcs.state.session import ROOTS
+from services.gcs.state.session import LIVE_ROOTS, ROOTS
 from services.gcs.view.cameras import FOV
 from services.gcs.view.drawing import CameraView, Picture
 from uvf.runtime.bus.address import Address, claim
@@ -22,18 +24,21 @@ BRAND = (46, 120, 200)
 
 
 class ViserPage:
-    """The page: one server; every browser sees the same scene and a panel of its own. camera: where a browser looks from at first."""
+    """The page: one server; every browser sees the same scene and a panel of its own.
 
-    def __init__(self, address: Address, camera: CameraView) -> None:
+    camera: where a browser looks from at first; downloads: files that it may take, by their paths on the server.
+    """
+
+    def __init__(self, address: Address, camera: CameraView, downloads: Mapping[str, Path]) -> None:
         claim(address)
         self._actions: queue.SimpleQueue[PageAction] = queue.SimpleQueue()
-        self._server = guarded_server(address)
+        self._server = guarded_server(address, downloads)
         self._panels: dict[int, ViserPanel] = {}
         self._picked: dict[int, tuple[float, float]] = {}
         self._server.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=BRAND)
         start = self._server.initial_camera
         start.position, start.look_at, start.fov, start.far = camera.position, camera.look_at, FOV, FAR
-        for root in [root for roots in ROOTS.values() for root in roots]:
+        for root in sorted({*LIVE_ROOTS, *(root for roots in ROOTS.values() for root in roots)}):
             # There before a browser comes, which hides the whole of it.
             self._server.scene.add_frame(root, show_axes=False)
         light(self._server.scene)

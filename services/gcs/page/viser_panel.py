@@ -49,7 +49,7 @@ class ViserPanel:
             with self._client._websock_connection.get_message_buffer().sanctioned_dead_writes(), self._client.atomic():
                 self._show_html(panel.html, panel.t)
                 self._show_layers(panel.hidden)
-                self._scene.show(panel.nodes, {})
+                self._scene.show(panel.nodes, panel.places)
                 if panel.theme != self._theme:
                     self._theme = panel.theme
                     dress(self._client.scene, panel.theme)

@@ -30,7 +30,7 @@ class ViserScene:
 
     def show(self, nodes: Mapping[str, Node], places: Mapping[str, DisplayPose]) -> None:
         """Shows these nodes and frames by name, changing only what differs."""
-        for name in [n for n in self._shown if n not in nodes]:
+        for name in sorted((n for n in self._shown if n not in nodes), reverse=True):  # children before the node that bears them
             self._shown.pop(name)[1].remove()
         for name in [n for n in reversed(self._frames) if n not in places]:  # what hangs on a frame before the frame
             self._frames.pop(name)[0].remove()

@@ -3,7 +3,8 @@
 import contextlib
 import io
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import viser
@@ -21,10 +22,10 @@ from uvf.runtime.bus.address import Address
 ERRORS_TOLD = 10
 
 
-def guarded_server(address: Address) -> viser.ViserServer:
+def guarded_server(address: Address, downloads: Mapping[str, Path]) -> viser.ViserServer:
     """viser's server behind the guard: websockets' ``serve``, which viser looks up when it starts, is wrapped meanwhile."""
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a browser's idle connection is not worth a traceback
-    guard = Guard(address.port, address.token, assets())
+    guard = Guard(address.port, address.token, assets(), downloads)
     door = Door()
     plain = websocket_server.serve
 

@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import msgspec
 
-from services.gcs import actions, map_actions, planning_actions, plot_actions
+from services.gcs import actions, map_actions, planning_actions, plot_actions, time_actions
 
 WORDS: Mapping[str, type[actions.PageAction]] = {
     "hello": actions.Hello,
@@ -43,6 +43,13 @@ WORDS: Mapping[str, type[actions.PageAction]] = {
     "plot-window": plot_actions.PlotWindow,
     "plot-hold": plot_actions.PlotHold,
     "plot-preset": plot_actions.PlotPreset,
+    "past": time_actions.ShowPast,
+    "past-at": time_actions.ShowMoment,
+    "past-event": time_actions.StepEvent,
+    "past-play": time_actions.PlayPast,
+    "past-rate": time_actions.PlayRate,
+    "live": time_actions.ShowLive,
+    "export": time_actions.ExportMinute,
     "save-map": map_actions.SaveMap,
     "relocalize": map_actions.Relocalize,
     "plan-add": planning_actions.PlanAdd,

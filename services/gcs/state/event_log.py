@@ -63,6 +63,10 @@ class EventHistory:
         """The notices to be shown at ``t`` [s, wall], newest first."""
         return [notice for notice in reversed(self._notices) if notice.until > t]
 
+    def since(self, count: int) -> list[EventLine]:
+        """The lines that have been written since ``count`` was what it is, oldest first; long ones ago may be missing."""
+        return [line for n, line in sorted(pair for kept in self._kept.values() for pair in kept) if n >= count]
+
     def __iter__(self) -> Iterator[EventLine]:
         """Oldest first."""
         return (line for _, line in sorted(pair for kept in self._kept.values() for pair in kept))

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from math import inf
 
 from services.gcs.state.graph_choice import GraphChoice
+from services.gcs.state.past_choice import PastChoice
 from services.gcs.state.plot_choice import PlotChoice
 from services.gcs.state.pointing import Pointed
 
@@ -20,6 +21,10 @@ ROOTS = {
     "True pose": ("/true",),
 }
 """Layer -> the nodes that bear it; each bears nothing else."""
+LIVE_ROOTS = ("/vehicles", "/spawned", "/world/moving", *(root for roots in ROOTS.values() for root in roots if root != "/world/walls"))
+"""The nodes that bear all that changes with time."""
+PAST_ROOT = "/past"
+"""The node that bears the same as it was at the moment that a browser looks at."""
 SHOWN_AT_FIRST = frozenset(ROOTS) - {"Team maps", "True pose"}
 VIEWS = ("Scene", "All", "Top", "Follow")
 """From where a scene can be looked at; the first one at first."""
@@ -27,9 +32,10 @@ CONFIRM_WITHIN = 5.0  # s
 OLD_AFTER = 2.0  # s: a page that shows what is older must not do what cannot be undone
 
 
-def hidden_roots(layers: Set[str]) -> frozenset[str]:
+def hidden_roots(layers: Set[str], in_the_past: bool) -> frozenset[str]:
     """The scene nodes that a browser with these layers hides, with all below them."""
-    return frozenset(root for layer, roots in ROOTS.items() if layer not in layers for root in roots)
+    unchecked = frozenset(root for layer, roots in ROOTS.items() if layer not in layers for root in roots)
+    return unchecked | {PAST_ROOT + root for root in unchecked} | set(LIVE_ROOTS) if in_the_past else unchecked
 
 
 @dataclass
@@ -62,6 +68,8 @@ class BrowserSession:
     """Of when [s, wall] the newest status bar is that it has shown."""
     to_confirm: tuple[str, str, float] | None = None
     """(vehicle, command, when [s, wall]) of the first of the two clicks that some commands take."""
+    past: PastChoice | None = None
+    """The moment of the past that it looks at; None: the present."""
     pointed: Pointed | None = None
     """The place on the ground that was clicked."""
 

@@ -12,7 +12,7 @@ from services.gcs.state.node_graph import NodeGraph
 from services.gcs.state.pointing import Pointed
 from services.gcs.state.session import ROOTS, VIEWS, BrowserSession, hidden_roots
 from services.gcs.state.state import Model
-from services.gcs.state.vehicle_model import VehicleModel
+from services.gcs.state.vehicle_model import DisplayPose, VehicleModel
 from services.gcs.view import (
     camera_panel,
     command_panel,
@@ -34,13 +34,15 @@ from services.gcs.view.controls import check_box, choice
 from services.gcs.view.drawing import CameraView, Colour, Node, PagePanel, Picture, Polyline
 from services.gcs.view.markup import Html, html, joined, trusted
 from services.gcs.view.overview import Overview
+from services.gcs.view.past import PastView
+from services.gcs.view.timeline import TimeBar, timeline
 from services.gcs.view.view import UP, SceneView
 
 Floats = NDArray[np.float64]
 
 HELP = Path(__file__).with_name("help.html")
 COLOURS: Mapping[str, Colour] = {"/own/way": (150, 160, 175), "/own/drawn": (140, 150, 168), "/own/flown": (232, 74, 214)}
-FAST = ("run", "plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
+FAST = ("time", "run", "plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
 EVERY = 2
 """Steps between two drawings of these, which tell at once."""
 SELDOM = 6
@@ -76,16 +78,18 @@ OF_TAB: Mapping[str, tuple[str, ...]] = {
 """What is drawn of a tab while it is open."""
 
 Draw = Callable[[], Html]
-OnShow = tuple[str, str, GraphChoice]
-"""The vehicle, the tab, and what is chosen in the tab Graph."""
+OnShow = tuple[str, str, GraphChoice, bool]
+"""The vehicle, the tab, what is chosen in the tab Graph, and whether it is the past."""
 
 
 class Composer:
     """Composes what the page shows from the state of the ground station."""
 
-    def __init__(self, model: Model, by_hand: ManualDriving) -> None:
+    def __init__(self, model: Model, by_hand: ManualDriving, time_bar: TimeBar) -> None:
         self._model = model
         self._by_hand = by_hand
+        self._time_bar = time_bar
+        self._past_views: dict[int, PastView] = {}
         self._view = SceneView(model)
         self._overview = Overview(model)
         self._help = trusted(HELP.read_text(encoding="utf-8"))
@@ -104,6 +108,7 @@ class Composer:
         sessions = self._model.sessions
         self._own = {page: own for page, own in self._own.items() if page in sessions}
         self._fitted = {page: fitted for page, fitted in self._fitted.items() if page in sessions}
+        self._past_views = {page: view for page, view in self._past_views.items() if page in self._time_bar.pasts}
         self._previews = {page: made for page, made in self._previews.items() if page in sessions}
         shown = {page: self._panel(session, t) for page, session in sessions.items()}
         self._step += 1
@@ -118,15 +123,26 @@ class Composer:
     def _panel(self, session: BrowserSession, t: float) -> PagePanel:
         """Drawn as a whole when another vehicle or tab comes on show: never the words about one under the name of another."""
         chosen = self._model.chosen_by(session)
-        on_show = (session.vehicle, session.tab, session.graph)
+        on_show = (session.vehicle, session.tab, session.graph, session.past is not None)
         before, words = self._own.get(session.page, (None, {}))
         new = not words or before != on_show
         draws = self._words(session, chosen, t)
         words = {name: content for name, content in words.items() if name in draws}
         words |= self._due(draws, new)
         self._own[session.page] = (on_show, words)
-        camera, nodes = self._camera(session), self._preview(session)
-        return PagePanel(words, nodes, hidden_roots(session.layers), session.theme, camera, session.views_chosen, t)
+        nodes: Mapping[str, Node] = self._preview(session)
+        places: Mapping[str, DisplayPose] = {}
+        if session.past is not None:
+            then = self._past_view(session)
+            nodes, places = then.nodes(session.past.t), then.places()
+        hidden = hidden_roots(session.layers, session.past is not None)
+        return PagePanel(words, nodes, places, hidden, session.theme, self._camera(session), session.views_chosen, t)
+
+    def _past_view(self, session: BrowserSession) -> PastView:
+        past = self._time_bar.pasts[session.page]
+        if session.page not in self._past_views or self._past_views[session.page].past is not past:
+            self._past_views[session.page] = PastView(past)
+        return self._past_views[session.page]
 
     def _words(self, session: BrowserSession, v: VehicleModel | None, t: float) -> dict[str, Draw]:
         model = self._model
@@ -137,6 +153,7 @@ class Composer:
             "notices": self._once("notices", None, lambda: status.notices(model, t)),
             "overview": self._once("overview", v, lambda: self._overview.svg(v)),
             "views": lambda: _views(session),
+            "time": lambda: timeline(self._time_bar, session, self._sim_time(session), t),
             "layers": lambda: _layers(session),
         }
         in_tabs = {
@@ -165,7 +182,14 @@ class Composer:
                 "plan": lambda: plan.plan_panel(v, session, t),
                 "handles": self._once("handles", v, lambda: plan.handles(v)),
             }
-        return always | {name: in_tabs[name] for name in OF_TAB.get(session.tab, ()) if name in in_tabs}
+        shown = always | {name: in_tabs[name] for name in OF_TAB.get(session.tab, ()) if name in in_tabs}
+        if session.past is None:
+            return shown
+        then = self._past_view(session).words(session, session.past.t)
+        return {name: then.get(name, draw) for name, draw in shown.items()}
+
+    def _sim_time(self, session: BrowserSession) -> float:
+        return (self._model if session.past is None else self._time_bar.pasts[session.page].model).sim_time
 
     def _graph(self, session: BrowserSession, t: float) -> dict[str, Draw]:
         model, choice, vehicle = self._model, session.graph, session.vehicle

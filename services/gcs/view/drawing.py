@@ -83,6 +83,8 @@ class PagePanel:
     """Markup by the slot of the page that it fills."""
     nodes: Mapping[str, Node] = field(default_factory=dict)
     """What only this browser sees in the scene."""
+    places: Mapping[str, DisplayPose] = field(default_factory=dict)
+    """Poses of the frames that only this browser has."""
     hidden: frozenset[str] = frozenset()
     """Nodes of the scene that it does not show, with all that hangs below them."""
     theme: str = "light"

@@ -52,7 +52,7 @@ def system_link(model: Model, t: float) -> tuple[str, str]:
 
 def status_bar(model: Model, session: BrowserSession, chosen: VehicleModel | None, t: float) -> Html:
     """The bar of a page at ``t`` [s, wall]: link, time, vehicles, the newest alarm, recording, who has control."""
-    word, style = system_link(model, t)
+    word, style = system_link(model, t) if session.past is None else ("PAST", "warn")
     rate = f"× {model.clock.rate:.2f}" if model.clock is not None and model.clock.rate > 0 else ""
     live = sum(link_of(v.heard, t)[1] == "good" for v in model.vehicles.values())
     parts = [
@@ -63,7 +63,8 @@ def status_bar(model: Model, session: BrowserSession, chosen: VehicleModel | Non
         _newest_alarm(model, t),
     ]
     if chosen is not None:
-        parts.append(_control(model, session, chosen))
+        if session.past is None:
+            parts.append(_control(model, session, chosen))
         shown = "<span class='g-shown' hidden data-name='{}' data-kind='{}' data-distance='{}'></span>"
         parts.append(html(shown, chosen.name, chosen.member.file.kind, 40 if chosen.flies else 3))
     return html("<div class='g-status'>{}</div>", joined(parts))

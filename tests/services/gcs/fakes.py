@@ -7,6 +7,7 @@ from html import unescape
 from typing import Any
 
 from services.gcs.actions import Beat, ClickGround, Hello, Join, OpenTab, Point
+from services.gcs.export import ExportState
 from services.gcs.page.words import action_in
 from services.gcs.service import GroundStation
 from tests.services.gcs.scripted import Script, demo_site
@@ -27,6 +28,7 @@ class Seen:
     places: Any
     html: Any
     own: Any
+    own_places: Any
     camera: Any
     hidden: Any
     theme: Any
@@ -68,7 +70,7 @@ class FakePage:
     def seen_by(self, page):
         picture = self.pictures[-1]
         own = picture.panels[page]
-        return Seen(picture.nodes, picture.places, own.html, own.nodes, own.camera, own.hidden, own.theme)
+        return Seen(picture.nodes, picture.places, own.html, own.nodes, own.places, own.camera, own.hidden, own.theme)
 
     def show(self, picture):
         self.pictures.append(picture)
@@ -82,6 +84,21 @@ class FakePage:
         self.closed = True
 
 
+class FakeExporter:
+    """Notes what is asked for."""
+
+    def __init__(self):
+        self.state = ExportState()
+        self.begun = []
+        self.closed = False
+
+    def begin(self, kind, ended, length):
+        self.begun.append((kind, ended, length))
+
+    def close(self):
+        self.closed = True
+
+
 class Station:
     """The service on a fake page, with scripted vehicles; ``run`` lets simulation and wall time pass alike."""
 
@@ -89,8 +106,9 @@ class Station:
         self.script = Script(accept=accept)
         self.page = FakePage()
         self.watch = LocalWatch(self.script.bus) if listens else FakeWatch()
+        self.exporter = FakeExporter()
         self.site = site or demo_site()
-        self.service = GroundStation(self.site, self.page, self.watch)
+        self.service = GroundStation(self.site, self.page, self.watch, self.exporter)
         self.shell = ServiceRunner(ServiceInstance(GroundStation, lambda: self.service), self.script.bus)
         self.t = 0.0
 

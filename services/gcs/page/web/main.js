@@ -53,6 +53,9 @@ document.addEventListener('change', event => {
   const value = field.type === 'checkbox' ? field.checked : field.type === 'number' || field.type === 'range' ? field.valueAsNumber : field.value;
   say(...word(field), value);
 });
+for (const [type, held] of [['pointerdown', 'yes'], ['pointerup', '']]) document.addEventListener(type, event => {  // a slider stays under the pointer
+  if (event.target.matches?.('#gcs input[type=range]')) setTimeout(() => held ? event.target.dataset.held = held : delete event.target.dataset.held, held ? 0 : 400);
+});
 document.addEventListener('input', event => {  // a slider steers while it is drawn
   if (event.target.matches?.('#gcs input[type=range][data-do]')) say(...word(event.target), event.target.valueAsNumber);
 });

@@ -27,7 +27,7 @@ function patch(old, fresh) {
   for (const { name, value } of fresh.attributes) if (old.getAttribute(name) !== value && !isOwn(old, name)) old.setAttribute(name, value);
   if (old.nodeName === 'INPUT') {
     if (ticked) old.checked = fresh.hasAttribute('checked');
-    if (written && old !== document.activeElement) old.value = fresh.getAttribute('value') || '';
+    if (written && !old.dataset.held && (old !== document.activeElement || old.type === 'range')) old.value = fresh.getAttribute('value') || '';
   }
   if (old.nodeName === 'SELECT' && old === document.activeElement) return;
   morph(old, fresh);
@@ -35,5 +35,5 @@ function patch(old, fresh) {
 
 // What the reader has opened stays open, whatever the server drew.
 // What is being moved stays under the pointer.
-const isOwn = (element, name) => (element.nodeName === 'DETAILS' && name === 'open') || (element.dataset.held && /^(data-[xyz]|data-held|style)$/.test(name))
+const isOwn = (element, name) => (element.nodeName === 'DETAILS' && name === 'open') || (element.dataset.held && /^(data-[xyz]|data-held|style|value)$/.test(name))
   || (name === 'style' && element.classList.contains('g-handle'));

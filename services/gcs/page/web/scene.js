@@ -5,6 +5,7 @@ import { on, say } from './link.js';
 const LEAST = 30;  // px: a vehicle is drawn no smaller than this, wherever it is looked at from
 const MOST = { fixed_wing: 40, ground: 6 };  // times its own size
 const page = () => window.__viserMutable;
+const vehicles = () => document.querySelector('#gcs .g-then') ? '/past/vehicles/' : '/vehicles/';
 
 let touched = false, told = '', following = false;
 const hand = event => { if (page() && event.target === page().canvas && (event.type === 'wheel' || event.buttons)) touched = true; };
@@ -82,7 +83,7 @@ function sizeOf(node) {
 function enlarge() {
   const { camera, nodeRefFromName, canvas } = page();
   for (const card of document.querySelectorAll('#gcs .g-card')) {
-    const node = nodeRefFromName['/vehicles/' + card.dataset.name], size = node && sizeOf(node);
+    const node = nodeRefFromName[vehicles() + card.dataset.name], size = node && sizeOf(node);
     if (!size) continue;
     const away = camera.position.distanceTo(node.getWorldPosition(node.position.clone()));
     const px = size / (2 * away * Math.tan(camera.fov * Math.PI / 360)) * canvas.clientHeight;
@@ -101,7 +102,7 @@ signs.addEventListener('click', event => {
 function point() {
   const { camera, nodeRefFromName, canvas } = page(), wide = canvas.clientWidth, high = canvas.clientHeight, seen = new Set();
   for (const card of document.querySelectorAll('#gcs .g-card')) {
-    const node = nodeRefFromName['/vehicles/' + card.dataset.name];
+    const node = nodeRefFromName[vehicles() + card.dataset.name];
     if (!node) continue;
     const at = node.getWorldPosition(node.position.clone()), away = camera.position.distanceTo(at);
     const eye = at.clone().applyMatrix4(camera.matrixWorldInverse), place = at.clone().project(camera);
@@ -133,7 +134,7 @@ function show(card, angle, [x, y], away) {
 let last = null;
 function follow() {
   const chosen = document.querySelector('#gcs-bar .g-shown'), control = page().cameraControl;
-  const node = chosen && page().nodeRefFromName['/vehicles/' + chosen.dataset.name];
+  const node = chosen && page().nodeRefFromName[vehicles() + chosen.dataset.name];
   if (!following || !control || !node) { last = null; return; }
   const at = node.getWorldPosition(node.position.clone());
   const eye = control.getPosition(at.clone()), target = control.getTarget(at.clone());

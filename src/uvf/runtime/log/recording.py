@@ -105,8 +105,7 @@ class Recorder:
         topic = topic_of(sample.key)
         if (topic is not None and not topic.logged) or not self._admission.admits(sample):
             return
-        stands = topic is not None and (topic.kept or topic.qos is Qos.LATCHED)
-        if stands and not self._standing.remember(sample):
+        if stands(sample.key) and not self._standing.remember(sample):
             self.refused["head"] += 1
         self._unsaved[sample.key] += not self.error
         self._put(sample)
@@ -186,6 +185,12 @@ class Recorder:
         summary = {"messages": str(self.written), "carried": str(self.carried), "complete": complete, "hash": self.hash.hexdigest()}
         refused = {f"refused {why}": str(n) for why, n in self.refused.items()}
         return summary | refused | {f"gap {key}": str(n) for key, n in self.gaps.items()}
+
+
+def stands(key: str) -> bool:
+    """Whether the newest message of a key holds until the next one: of latched and kept topics."""
+    topic = topic_of(key)
+    return topic is not None and (topic.kept or topic.qos is Qos.LATCHED)
 
 
 def descriptor_set(type_name: str) -> bytes:

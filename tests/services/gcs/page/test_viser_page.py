@@ -29,7 +29,7 @@ CAMERA = CameraView((0.0, -20.0, 10.0), (0.0, 0.0, 0.0))
 @pytest.fixture
 def page():
     port = free_port()
-    page = ViserPage(Address(port=port), CAMERA)
+    page = ViserPage(Address(port=port), CAMERA, {})
     page.port = port
     yield page
     page.close()
@@ -197,13 +197,13 @@ def test_no_other_page_may_frame_it(page):
 
 def test_a_second_page_on_the_same_port_says_so(page):
     with pytest.raises(BadInput, match=f"{page.port}.*UVF_GCS_PORT"):
-        ViserPage(Address(port=page.port), CAMERA)
+        ViserPage(Address(port=page.port), CAMERA, {})
 
 
 def test_a_closed_page_frees_its_port_for_the_next():
     port = free_port()
     for _ in range(2):
-        page = ViserPage(Address(port=port), CAMERA)
+        page = ViserPage(Address(port=port), CAMERA, {})
         assert names(join(port))
         page.close()
 

@@ -45,7 +45,7 @@ def test_another_thread_does_not_walk_over_those_who_wait_and_they_wake_all_the_
 
 @pytest.fixture
 def page_server():
-    server = guarded_server(Address(port=free_port()))
+    server = guarded_server(Address(port=free_port()), {})
     browser = Browser(server.get_port())
     assert until(server.get_clients)
     yield server

@@ -1,0 +1,129 @@
+"""Files of a minute of the run, made of its log in another process: the log itself, or a page that plays it."""
+
+import contextlib
+import tempfile
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.log.excerpt import Span, excerpt
+from uvf.runtime.log.folder import LOG_FOLDER, logs_of
+from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
+
+PATH = "/export/"
+FLUSH = 1.5  # s until what has been recorded is in the file
+NS = 10**9
+
+
+@dataclass(frozen=True)
+class ExportState:
+    """What there is of files to take away."""
+
+    why_not: str = ""
+    """Why there can be none."""
+    making: str = ""
+    """The kind that is being made: mcap or html."""
+    name: str = ""
+    path: str = ""
+    """Where the page gets the last one that was made; "" where there is none."""
+    size: int = 0  # bytes
+    fault: str = ""
+    """Why the last one could not be made."""
+
+
+class Exporter(Protocol):
+    """Makes files of a part of the run."""
+
+    @property
+    def state(self) -> ExportState:
+        """How far it is."""
+        ...
+
+    def begin(self, kind: str, ended: float, length: float) -> None:
+        """Begins with a file (mcap or html) of the ``length`` [s] that ended ``ended`` [s] ago; does nothing while it makes one."""
+        ...
+
+    def close(self) -> None:
+        """Removes the files."""
+        ...
+
+
+class NoExporter:
+    """Where nothing records the run."""
+
+    files: Mapping[str, Path] = {}
+    state = ExportState(why_not=f"nothing records this run: 'uvf up' does; or set {LOG_FOLDER} to the folder of 'uvf record'")
+
+    def begin(self, kind: str, ended: float, length: float) -> None:
+        """Does nothing."""
+
+    def close(self) -> None:
+        """Does nothing."""
+
+
+class LogExporter:
+    """Makes files of the logs in a folder, one at a time. files: those to be served, by their paths on the server."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._made = tempfile.TemporaryDirectory(prefix="uvf-export-")
+        self.state = ExportState()
+        self.files: dict[str, Path] = {}
+
+    def begin(self, kind: str, ended: float, length: float) -> None:
+        """As ``Exporter`` says."""
+        if self.state.making:
+            return
+        self.state = ExportState(making=kind)
+        until = time.time_ns() - round(ended * NS)
+        threading.Thread(target=self._make, args=(kind, until - round(length * NS), until), daemon=True).start()
+
+    def _make(self, kind: str, since: int, until: int) -> None:
+        wait = until + round(FLUSH * NS) - time.time_ns()
+        time.sleep(max(wait / NS, 0.0))
+        name = time.strftime("minute-%Y-%m-%d_%H-%M-%S", time.localtime(until / NS))
+        target = Path(self._made.name) / f"{name}.{kind}"
+        try:
+            run_in_subprocess(make_file, str(self._folder), str(target), kind, since, until)
+            size = target.stat().st_size
+        except (BadInput, Died, OSError) as error:
+            self.state = ExportState(fault=str(error))
+            return
+        for old in self.files.values():
+            with contextlib.suppress(OSError):
+                old.unlink()
+        self.files.clear()
+        self.files[PATH + target.name] = target
+        self.state = ExportState(name=target.name, path=PATH + target.name, size=size)
+
+    def close(self) -> None:
+        """As ``Exporter`` says."""
+        self._made.cleanup()
+
+
+def make_file(folder: str, target: str, kind: str, since: int, until: int) -> None:
+    """Makes a file of the logs of a run in a process of its own. since, until: ns since 1970. Raises BadInput."""
+    log = Path(target).with_suffix(".mcap")
+    excerpt(logs_since(Path(folder), since), log, Span(since, until, recorded=True))
+    if kind == "html":
+        from services.gcs.page.viser_replay import write_replay
+
+        write_replay(log, Path(target))
+        log.unlink()
+
+
+def logs_since(folder: Path, since: int) -> Sequence[Path]:
+    """Logs in their order to which something was written after ``since`` [ns since 1970]. Raises BadInput where there is none.
+
+    Each begins with all that stood then.
+    """
+    if not folder.is_dir():
+        raise BadInput(f"{folder}: is no folder with the log of a run; set {LOG_FOLDER} to one")
+    found = [path for path in logs_of(folder) if path.stat().st_mtime_ns >= since]
+    if not found:
+        raise BadInput(f"{folder}: holds no log of that time")
+    return found

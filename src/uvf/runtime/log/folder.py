@@ -1,0 +1,25 @@
+"""Where the logs of a run are, the one that is being recorded and those of the past."""
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from uvf.models.yaml_data import BadInput
+
+LOG_FOLDER = "UVF_LOG_FOLDER"
+
+
+def log_folder(environment: Mapping[str, str] = os.environ) -> Path | None:
+    """The folder with the run's logs, by UVF_LOG_FOLDER; None where nothing is said of one."""
+    text = environment.get(LOG_FOLDER, "")
+    return Path(text) if text else None
+
+
+def logs_of(run: Path) -> list[Path]:
+    """The files of a run's folder in their order, or the one log that is named. Raises BadInput."""
+    if not run.is_dir():
+        return [run]
+    found = sorted(run.glob("log-*.mcap"), key=lambda p: (len(p.name), p.name))
+    if not found:
+        raise BadInput(f"{run}: no log-*.mcap in this folder: name the folder of a run or a log")
+    return found
