@@ -56,8 +56,8 @@ def log_echo(
             typer.echo(line)
 
 
-FromOption = Annotated[float, typer.Option("--from", min=0.0, help="Simulation time [s] at which it begins.")]
-ToOption = Annotated[float, typer.Option("--to", min=0.0, help="Simulation time [s] at which it ends.")]
+FromOption = Annotated[float, typer.Option("--from", min=0.0, help="Simulation time in s at which it begins.")]
+ToOption = Annotated[float, typer.Option("--to", min=0.0, help="Simulation time in s at which it ends.")]
 
 
 @log_app.command("cut")
