@@ -16,7 +16,7 @@ def build(site: Scenario) -> list[ServiceInstance]:
 
     def make() -> GroundStation:
         from services.gcs.page.viser_page import ViserPage
-        from services.gcs.view.cameras import cameras
+        from services.gcs.view.scene.cameras import cameras
         from services.gcs.zenoh_watch import ZenohWatch
 
         folder = log_folder()

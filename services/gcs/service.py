@@ -56,7 +56,7 @@ from services.gcs.state.state import Model
 from services.gcs.time_travel import TimeTravel
 from services.gcs.view.composer import Composer
 from services.gcs.view.drawing import Page
-from services.gcs.view.timeline import TimeBar
+from services.gcs.view.panels.timeline import TimeBar
 from services.gcs.watch import BusWatch
 from uvf.models.scenario import Scenario
 from uvf.runtime.contract.declaration import Reads, Writes, answers, call, each_vehicle, every, optional, stop_all, topic

@@ -9,7 +9,7 @@ import pytest
 from services.gcs.export import NoExporter
 from services.gcs.page.viser_page import ViserPage
 from services.gcs.service import GroundStation
-from services.gcs.view.cameras import cameras
+from services.gcs.view.scene.cameras import cameras
 from tests.second_try import Shared
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
 from tests.services.gcs.watches import LocalWatch

@@ -9,7 +9,7 @@ import time
 from services.gcs.page import viser_socket
 from services.gcs.page.viser_page import ViserPage
 from services.gcs.service import GroundStation
-from services.gcs.view.cameras import cameras
+from services.gcs.view.scene.cameras import cameras
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
 from tests.services.gcs.watches import FakeWatch
 from uvf.runtime.bus.address import Address

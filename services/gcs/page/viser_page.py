@@ -15,8 +15,8 @@ from services.gcs.page.viser_panel import ViserPanel
 from services.gcs.page.viser_scene import ViserScene
 from services.gcs.page.viser_server import guarded_server
 from services.gcs.state.session import LIVE_ROOTS, ROOTS
-from services.gcs.view.cameras import FOV
 from services.gcs.view.drawing import CameraView, Picture
+from services.gcs.view.scene.cameras import FOV
 from uvf.runtime.bus.address import Address, claim
 
 FAR = 20_000.0  # m

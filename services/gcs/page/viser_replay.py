@@ -16,8 +16,8 @@ from services.gcs.page.viser_ground import dress, light
 from services.gcs.page.viser_scene import ViserScene
 from services.gcs.page.viser_server import guarded_server
 from services.gcs.service import GroundStation
-from services.gcs.view.cameras import FOV, cameras
 from services.gcs.view.drawing import Picture
+from services.gcs.view.scene.cameras import FOV, cameras
 from services.gcs.watch import WatchedMessage
 from uvf.models.scenario import Scenario
 from uvf.models.yaml_data import BadInput

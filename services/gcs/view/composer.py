@@ -13,7 +13,10 @@ from services.gcs.state.pointing import Pointed
 from services.gcs.state.session import ROOTS, VIEWS, BrowserSession, hidden_roots
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import DisplayPose, VehicleModel
-from services.gcs.view import (
+from services.gcs.view.controls import check_box, choice
+from services.gcs.view.drawing import CameraView, Colour, Node, PagePanel, Picture, Polyline
+from services.gcs.view.markup import Html, html, joined, trusted
+from services.gcs.view.panels import (
     camera_panel,
     command_panel,
     facts,
@@ -29,18 +32,15 @@ from services.gcs.view import (
     status,
     teleoperation,
 )
-from services.gcs.view.cameras import ASPECT, cameras
-from services.gcs.view.controls import check_box, choice
-from services.gcs.view.drawing import CameraView, Colour, Node, PagePanel, Picture, Polyline
-from services.gcs.view.markup import Html, html, joined, trusted
-from services.gcs.view.overview import Overview
+from services.gcs.view.panels.overview import Overview
+from services.gcs.view.panels.timeline import TimeBar, timeline
 from services.gcs.view.past import PastView
-from services.gcs.view.timeline import TimeBar, timeline
-from services.gcs.view.view import UP, SceneView
+from services.gcs.view.scene.cameras import ASPECT, cameras
+from services.gcs.view.scene.scene_view import UP, SceneView
 
 Floats = NDArray[np.float64]
 
-HELP = Path(__file__).with_name("help.html")
+HELP = Path(__file__).with_name("panels") / "help.html"
 COLOURS: Mapping[str, Colour] = {"/own/way": (150, 160, 175), "/own/drawn": (140, 150, 168), "/own/flown": (232, 74, 214)}
 FAST = ("time", "run", "plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
 EVERY = 2

@@ -5,12 +5,12 @@ from collections.abc import Callable, Mapping
 from services.gcs.state.past import PastModel
 from services.gcs.state.session import PAST_ROOT, BrowserSession
 from services.gcs.state.vehicle_model import DisplayPose
-from services.gcs.view import camera_panel, facts, fleet, records, status
 from services.gcs.view.controls import button
 from services.gcs.view.drawing import Node
 from services.gcs.view.markup import Html, html
-from services.gcs.view.overview import Overview
-from services.gcs.view.view import SceneView
+from services.gcs.view.panels import camera_panel, facts, fleet, records, status
+from services.gcs.view.panels.overview import Overview
+from services.gcs.view.scene.scene_view import SceneView
 
 STATIC = "/world/"
 MOVING = "/world/moving/"

@@ -19,7 +19,7 @@ from schemas.messages import (
 from services.gcs.state.external_vehicles import FORGOTTEN_AFTER
 from services.gcs.state.process_book import MOST_PROCESSES
 from services.gcs.state.state import MOST_VEHICLES, Model
-from services.gcs.view.view import SceneView
+from services.gcs.view.scene.scene_view import SceneView
 from tests.services.gcs.scripted import UAV, UGV, demo_site
 from uvf.runtime.contract.inbox import OWNERS_MOST
 

@@ -6,7 +6,7 @@ import pytest
 from schemas import topics
 from schemas.messages import Clock, Event, NavState, Process, Processes, Vector3
 from services.gcs.actions import OpenTab, ReleaseStop, Select, StopAll
-from services.gcs.view import facts, status
+from services.gcs.view.panels import facts, status
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 from uvf.maths.rotations import from_euler

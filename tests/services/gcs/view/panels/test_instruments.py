@@ -7,8 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from services.gcs.view.instruments import CX, CY, PX_PER_DEGREE, DriveInstruments, FlightInstruments, drive_panel, primary_flight_display
 from services.gcs.view.markup import html
+from services.gcs.view.panels.instruments import (
+    CX,
+    CY,
+    PX_PER_DEGREE,
+    DriveInstruments,
+    FlightInstruments,
+    drive_panel,
+    primary_flight_display,
+)
 
 LEVEL = FlightInstruments(0.0, 0.0, np.pi / 2, 24.3, 60.0, 0.4, 25.0, html("MISSION"), True)
 STILL = DriveInstruments(0.0, 0.0, 0.0, 0.5, 2.0, None, html("HOLD"), False)

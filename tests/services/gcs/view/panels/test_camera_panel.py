@@ -9,7 +9,7 @@ from schemas import topics
 from schemas.messages import GimbalCommand, JointState, JointStates
 from services.gcs.actions import AimGimbal, GimbalMode, Looking, OpenTab, Select, ShowCamera
 from services.gcs.page.words import action_in
-from services.gcs.view.camera_panel import SEEN_FOR
+from services.gcs.view.panels.camera_panel import SEEN_FOR
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, with_eyes
 from uvf.runtime.messages.convert import stamp

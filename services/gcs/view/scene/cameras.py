@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from services.gcs.state.session import VIEWS
 from services.gcs.view.drawing import CameraView
-from services.gcs.view.scenery import extent
+from services.gcs.view.scene.scenery import extent
 from uvf.models.scenario import Scenario
 
 Floats = NDArray[np.float64]

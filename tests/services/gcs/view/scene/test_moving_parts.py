@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from schemas import topics
 from schemas.messages import JointState, JointStates
-from services.gcs.view.moving_parts import MOST_TURN, SEEN, MovingParts
+from services.gcs.view.scene.moving_parts import MOST_TURN, SEEN, MovingParts
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV
 from uvf.models.aircraft.shape import aircraft_shape

@@ -9,8 +9,8 @@ from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model
 from services.gcs.view.controls import button
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.progress import order_line
-from services.gcs.view.status import clock_text
+from services.gcs.view.panels.progress import order_line
+from services.gcs.view.panels.status import clock_text
 from uvf.models.yaml_data import BadInput, read_yaml
 
 RATES = (0.25, 0.5, 1.0, 2.0, 5.0, 0.0)

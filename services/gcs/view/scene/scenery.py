@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.gcs.state.vehicle_model import DisplayPose
-from services.gcs.view.bodies import rgb
 from services.gcs.view.drawing import Colour, MeshNode, Node, Polyline
+from services.gcs.view.scene.bodies import rgb
 from uvf.maths.rotations import IDENTITY, from_euler, matrix
 from uvf.models.mission.file import Waypoint
 from uvf.models.scenario import MissionVehicle, Scenario

@@ -13,9 +13,9 @@ from services.gcs.state.graph_choice import GraphChoice
 from services.gcs.state.node_graph import NodeGraph, ServiceState, TopicState
 from services.gcs.state.topic_verdicts import Grade
 from services.gcs.state.traffic import SHOWN_MOST, KeyTraffic
-from services.gcs.view.graph import listed, summary
-from services.gcs.view.graph_drawing import MOST_BOXES, WIDTH, drawing
-from services.gcs.view.message_text import MOST_LINES, message_text
+from services.gcs.view.panels.graph import listed, summary
+from services.gcs.view.panels.graph_drawing import MOST_BOXES, WIDTH, drawing
+from services.gcs.view.panels.message_text import MOST_LINES, message_text
 from services.gcs.watch import WatchedMessage
 from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UGV

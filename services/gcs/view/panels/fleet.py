@@ -6,7 +6,7 @@ from services.gcs.state.vehicle_model import VehicleModel, link_of
 from services.gcs.state.wording import mode_name
 from services.gcs.view.controls import does
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.progress import waypoint_text
+from services.gcs.view.panels.progress import waypoint_text
 
 SIZE_OF_ROVER = 0.5  # m, of one whose outline nobody has measured
 

@@ -6,9 +6,9 @@ from math import atan2, degrees, hypot, pi
 from schemas.messages import NavStatus
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.state.wording import mode_name
-from services.gcs.view.instruments import DriveInstruments, FlightInstruments, drive_panel, primary_flight_display
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.progress import waypoint_text
+from services.gcs.view.panels.instruments import DriveInstruments, FlightInstruments, drive_panel, primary_flight_display
+from services.gcs.view.panels.progress import waypoint_text
 from uvf.maths.rotations import to_euler
 from uvf.runtime.messages.convert import wxyz
 from uvf.runtime.messages.enum_names import enum_name

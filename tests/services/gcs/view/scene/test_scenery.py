@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from services.gcs.view import bodies
-from services.gcs.view.cameras import ASPECT, FOV, cameras
-from services.gcs.view.scenery import WALL_SHOWN, extent, moving, places_of, rgb_of, scenery
+from services.gcs.view.scene import bodies
+from services.gcs.view.scene.cameras import ASPECT, FOV, cameras
+from services.gcs.view.scene.scenery import WALL_SHOWN, extent, moving, places_of, rgb_of, scenery
 from tests.services.gcs.scripted import LEGS, demo_site
 from uvf.models.scenario import ROOT
 from uvf.models.shapes.mesh_parts import box, lathe, plate, rod

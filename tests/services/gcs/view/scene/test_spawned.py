@@ -4,8 +4,8 @@ import pytest
 
 from schemas.messages import NavState, Pose, Quaternion, SimObject, SimObjects, Vector3
 from services.gcs.state.state import Model
-from services.gcs.view import spawned
-from services.gcs.view.view import SceneView
+from services.gcs.view.scene import spawned
+from services.gcs.view.scene.scene_view import SceneView
 from tests.services.gcs.scripted import UGV, demo_site
 from uvf.models.shapes.mesh import triangles
 from uvf.models.vehicle.file import load_vehicle

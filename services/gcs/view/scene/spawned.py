@@ -3,9 +3,9 @@
 from schemas.messages import SimObject
 from services.gcs.state.state import Model, model_name
 from services.gcs.state.vehicle_model import DisplayPose
-from services.gcs.view.bodies import rgb, rover
 from services.gcs.view.drawing import Colour, Node
-from services.gcs.view.scenery import at_rest, coloured, merge
+from services.gcs.view.scene.bodies import rgb, rover
+from services.gcs.view.scene.scenery import at_rest, coloured, merge
 from uvf.models.aircraft.shape import aircraft_shape
 from uvf.models.shapes.mesh_parts import MeshPart
 from uvf.models.vehicle.file import load_vehicle

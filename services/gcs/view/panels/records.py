@@ -7,7 +7,7 @@ from services.gcs.state.event_log import EventHistory, EventLine
 from services.gcs.state.state import Model
 from services.gcs.state.vitals import Vitals
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.status import SEVERITY, clock_text
+from services.gcs.view.panels.status import SEVERITY, clock_text
 from uvf.runtime.messages.enum_names import enum_name
 
 SHOWN, OF_OPERATOR = 40, 6  # lines of each kind

@@ -10,7 +10,7 @@ from services.gcs.state.past_choice import RATES
 from services.gcs.state.session import BrowserSession
 from services.gcs.view.controls import button, choice, does
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.status import SEVERITY, clock_text
+from services.gcs.view.panels.status import SEVERITY, clock_text
 
 TICKS_MOST = 60
 TICK_TEXT = 120  # letters

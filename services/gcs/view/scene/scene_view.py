@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from schemas.messages import FrameTransform, Grid, NavStatus
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import DisplayPose, VehicleModel
-from services.gcs.view import bodies
 from services.gcs.view.drawing import Colour, FloorPicture, Node, Points, Polyline, TextNode
-from services.gcs.view.fences import fence_nodes
-from services.gcs.view.map_image import known_part, occupancy_png
-from services.gcs.view.moving_parts import MovingParts
-from services.gcs.view.scenery import circuit_line, coloured, moving, places_of, rgb_of, scenery
-from services.gcs.view.spawned import Spawned
+from services.gcs.view.scene import bodies
+from services.gcs.view.scene.fences import fence_nodes
+from services.gcs.view.scene.map_image import known_part, occupancy_png
+from services.gcs.view.scene.moving_parts import MovingParts
+from services.gcs.view.scene.scenery import circuit_line, coloured, moving, places_of, rgb_of, scenery
+from services.gcs.view.scene.spawned import Spawned
 from uvf.maths.rotations import multiply, rotate, to_euler
 from uvf.models.aircraft.shape import AircraftShape, aircraft_shape
 from uvf.models.shapes.mesh_parts import MeshPart

@@ -9,9 +9,9 @@ from schemas import topics
 from schemas.limits import LENGTHS
 from schemas.messages import Fence, FenceZone, Vector3
 from services.gcs.actions import Layer
-from services.gcs.view import view
 from services.gcs.view.drawing import MeshNode, Polyline
-from services.gcs.view.fences import CORNERS, KEEP_OUT, fence_nodes
+from services.gcs.view.scene import view
+from services.gcs.view.scene.fences import CORNERS, KEEP_OUT, fence_nodes
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 
