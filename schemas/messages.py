@@ -50,7 +50,7 @@ from schemas.v1.mission_pb2 import (
     RouteRequest,
     SetCurrentRequest,
 )
-from schemas.v1.navigation_pb2 import NavDirective, NavReport, PreviewReply, PreviewRequest
+from schemas.v1.navigation_pb2 import MovingObstacle, MovingObstacles, NavDirective, NavReport, PreviewReply, PreviewRequest
 from schemas.v1.octree_pb2 import OctreeMap, OctreeSaveRequest
 from schemas.v1.rally_pb2 import RallyPoints, RallyRequest
 from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
@@ -148,6 +148,8 @@ __all__ = [
     "MissionRequest",
     "Mode",
     "ModeRequest",
+    "MovingObstacle",
+    "MovingObstacles",
     "NavState",
     "NavDirective",
     "NavReport",

@@ -154,11 +154,29 @@ PATH = Topic(f"{_V}/nav/path", m.PosesInFrame, 2, _Q.STATE, "path being followed
 NAV_STATUS = Topic(f"{_V}/nav/status", m.NavStatus, 2, _Q.STATE, "what the planner is doing", kept=True)
 NAV_DIRECTIVE = Topic(f"{_V}/nav/directive", m.NavDirective, 4, _Q.STATE, "what the tracker is to do: follow the path, or recover")
 NAV_REPORT = Topic(f"{_V}/nav/report", m.NavReport, 10, _Q.STATE, "how the tracker fares with it")
+OBSTACLES = Topic(f"{_V}/nav/obstacles", m.MovingObstacles, 5, _Q.STATE, "what moves around the vehicle, as its tracker follows it")
+PARTICLES = Topic(f"{_V}/nav/particles", m.PosesInFrame, 5, _Q.STATE, "some of the particles that localize the vehicle, map frame")
 MAP_POSE = Topic(
     f"{_V}/nav/map_pose", m.MapFix, 5, _Q.STATE, "where the newest scan places the vehicle in its map, and how surely", kept=True
 )
 MAP_SESSION = Topic(f"{_V}/map/session", m.MapSession, 0, _Q.LATCHED, "keyframes, poses and edges of the map", logged=False, kept=True)
 MAP = Topic(f"{_V}/map/grid", m.Grid, 0, _Q.LATCHED, "occupancy, int8: -1 unknown, 0..100", kept=True)
+COSTMAP = Topic(
+    f"{_V}/map/costmap",
+    m.Grid,
+    0,
+    _Q.LATCHED,
+    "what the planner plans on, map frame, uint8: 0 free, 253 inscribed, 254 obstacle, 255 unknown",
+    logged=False,
+)
+LOCAL_COSTS = Topic(
+    f"{_V}/map/costs",
+    m.Grid,
+    0,
+    _Q.LATCHED,
+    "what the tracker drives by, around the vehicle, world frame; values as map/costmap",
+    logged=False,
+)
 TEAM_MAP = Topic(
     f"{_V}/map/team", m.Grid, 0, _Q.LATCHED, "maps that were found to be of one place, in the map frame of the first; as map/grid"
 )

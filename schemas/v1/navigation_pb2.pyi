@@ -86,3 +86,21 @@ class PreviewReply(_message.Message):
     duration: float
     clearance: float
     def __init__(self, accepted: bool = ..., reason: _Optional[str] = ..., poses: _Optional[_Iterable[_Union[_Pose_pb2.Pose, _Mapping]]] = ..., length: _Optional[float] = ..., duration: _Optional[float] = ..., clearance: _Optional[float] = ...) -> None: ...
+
+class MovingObstacle(_message.Message):
+    __slots__ = ("position", "velocity", "radius")
+    POSITION_FIELD_NUMBER: _ClassVar[int]
+    VELOCITY_FIELD_NUMBER: _ClassVar[int]
+    RADIUS_FIELD_NUMBER: _ClassVar[int]
+    position: _Vector3_pb2.Vector3
+    velocity: _Vector3_pb2.Vector3
+    radius: float
+    def __init__(self, position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., velocity: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., radius: _Optional[float] = ...) -> None: ...
+
+class MovingObstacles(_message.Message):
+    __slots__ = ("timestamp", "obstacles")
+    TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
+    OBSTACLES_FIELD_NUMBER: _ClassVar[int]
+    timestamp: _timestamp_pb2.Timestamp
+    obstacles: _containers.RepeatedCompositeFieldContainer[MovingObstacle]
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., obstacles: _Optional[_Iterable[_Union[MovingObstacle, _Mapping]]] = ...) -> None: ...

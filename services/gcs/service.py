@@ -13,10 +13,12 @@ from schemas.messages import (
     ClockRequest,
     CompressedImage,
     DriveCommand,
+    EstimateQuality,
     Event,
     ExternalVehicle,
     Fence,
     FrameTransform,
+    FrameTransforms,
     GimbalCommand,
     GoalRequest,
     Grid,
@@ -24,12 +26,15 @@ from schemas.messages import (
     JointStates,
     LaserScan,
     LaunchRequest,
+    MapFix,
     Mission,
     MissionProgress,
     MissionRequest,
     ModeRequest,
+    MovingObstacles,
     NavState,
     NavStatus,
+    OctreeMap,
     Odometry,
     PlaceRequest,
     PoseInFrame,
@@ -37,6 +42,7 @@ from schemas.messages import (
     PreviewReply,
     PreviewRequest,
     Processes,
+    RallyPoints,
     RelocalizeRequest,
     Reply,
     SaveMapRequest,
@@ -51,7 +57,7 @@ from services.gcs.export import Exporter
 from services.gcs.listening import BusListening
 from services.gcs.offers import SOURCE
 from services.gcs.state import past
-from services.gcs.state.history import History
+from services.gcs.state.history import RecentHistory
 from services.gcs.state.state import Model
 from services.gcs.time_travel import TimeTravel
 from services.gcs.view.composer import Composer
@@ -83,6 +89,16 @@ NEWEST = (
     "grid",
     "team_map",
     "world_from_map",
+    "fix",
+    "quality",
+    "particles",
+    "obstacles",
+    "costmap",
+    "local_costs",
+    "octree",
+    "map_from_odom",
+    "tf_static",
+    "rally",
 )
 """Inputs by vehicle that are kept under their names as the newest of their kind."""
 
@@ -124,6 +140,16 @@ class GroundStation(Service):
         grid: dict[str, Grid] = each_vehicle(topics.MAP)
         team_map: dict[str, Grid] = each_vehicle(topics.TEAM_MAP)
         world_from_map: dict[str, FrameTransform] = each_vehicle(topics.TF_WORLD)
+        fix: dict[str, MapFix] = each_vehicle(topics.MAP_POSE)
+        quality: dict[str, EstimateQuality] = each_vehicle(topics.QUALITY)
+        particles: dict[str, PosesInFrame] = each_vehicle(topics.PARTICLES)
+        obstacles: dict[str, MovingObstacles] = each_vehicle(topics.OBSTACLES)
+        costmap: dict[str, Grid] = each_vehicle(topics.COSTMAP)
+        local_costs: dict[str, Grid] = each_vehicle(topics.LOCAL_COSTS)
+        octree: dict[str, OctreeMap] = each_vehicle(topics.OCTREE)
+        map_from_odom: dict[str, FrameTransform] = each_vehicle(topics.TF_MAP)
+        tf_static: dict[str, FrameTransforms] = each_vehicle(topics.TF_STATIC)
+        rally: dict[str, RallyPoints] = each_vehicle(topics.RALLY)
         events: dict[str, list[Event]] = each_vehicle(every(topics.EVENTS.by("*")))
         goal: list[Answer[GoalRequest, Reply]] = answers(topics.GOAL)
         cancel: list[Answer[CancelRequest, Reply]] = answers(topics.CANCEL)
@@ -163,7 +189,7 @@ class GroundStation(Service):
         self._page = page
         self._model = Model(site)
         self._exporter = exporter
-        self._history = History()
+        self._history = RecentHistory()
         self._logged = 0
         time = TimeTravel(self._model, self._history, exporter)
         self._commander = Commander(self._model, time)

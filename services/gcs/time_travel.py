@@ -3,7 +3,7 @@
 from math import isfinite
 
 from services.gcs.export import Exporter
-from services.gcs.state.history import History
+from services.gcs.state.history import RecentHistory
 from services.gcs.state.past import PastModel
 from services.gcs.state.past_choice import RATES, PastChoice
 from services.gcs.state.session import BrowserSession
@@ -17,7 +17,7 @@ HALF = 30.0  # s
 class TimeTravel:
     """Follows what the pages ask of their time bars. models: of the pages that look at the past, as they see it."""
 
-    def __init__(self, model: Model, history: History, exporter: Exporter) -> None:
+    def __init__(self, model: Model, history: RecentHistory, exporter: Exporter) -> None:
         self._model = model
         self._history = history
         self._exporter = exporter

@@ -66,6 +66,7 @@ class Outputs(Writes):
     directive: NavDirective | None = topic(topics.NAV_DIRECTIVE)
     path: PosesInFrame | None = topic(topics.PATH)
     nav_status: NavStatus | None = topic(topics.NAV_STATUS)
+    costmap: Grid | None = topic(topics.COSTMAP)
     events: list[Event] | None = topic(topics.EVENTS.by("planner"))
     goal: list[Reply] = replies(topics.GOAL)
     route: list[Reply] = replies(topics.ROUTE)

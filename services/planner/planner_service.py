@@ -69,7 +69,7 @@ class PlannerService(Service):
         self._world_from_map = world_from_map
         self._vehicle, self._footprint = vehicle, vehicle.footprint
         self._planner = GlobalPlanner(self._body)
-        self._ground = PlanningGround(self._planner, vehicle.sensors, world_from_map)
+        self._ground = PlanningGround(vehicle.name, self._planner, vehicle.sensors, world_from_map)
         self._navigator = Navigator(self._ground.routes, self._patience)
         self._exploration = ExplorationGoals(self._planner, self._taste)
         self._return_points = ReturnPoints()
@@ -128,6 +128,7 @@ class PlannerService(Service):
             directive=directive_message(t, directive),
             path=path_message(t, directive, self._world_from_map),
             nav_status=self._nav_status(t),
+            costmap=self._ground.costmap(t),
             events=events,
             set_mode=asks,
             goal=goal_replies,

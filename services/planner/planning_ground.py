@@ -1,26 +1,33 @@
 """What a planner knows of its vehicle's ground: map, masks, and what the sensors see that the map does not show."""
 
+from math import inf
+
 import numpy as np
 
 from schemas.messages import Grid, LaserScan, PoseInFrame
 from services.planner.masks import MaskReader
 from services.planner.obstacle_sensors import ObstacleSensors, OtherReadings
 from uvf.maths.se2 import Pose2, compose, inverse, transform
+from uvf.planning.costmap.costmap import Costmap
 from uvf.planning.costmap.hidden_obstacles import HiddenObstacles
 from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
 from uvf.planning.global_planner import GlobalPlanner
 from uvf.planning.navigation.directive import Directive
 from uvf.planning.navigation.global_routes import GlobalRoutes
-from uvf.runtime.messages.convert import occupancy_cells, pose2_of, seconds
+from uvf.runtime.messages.convert import cost_grid, occupancy_cells, pose2_of, seconds
 
 SIZE, RESOLUTION = 8.0, 0.05  # m, of the window in which obstacles are remembered that the map does not show
+TELL_PERIOD = 2.0  # s between two costmaps that are told
 LIFETIME = 30.0  # s that such an obstacle is remembered without being seen
 
 
 class PlanningGround:
     """One vehicle's, in the map frame."""
 
-    def __init__(self, planner: GlobalPlanner, sensors: ObstacleSensors, world_from_map: Pose2) -> None:
+    def __init__(self, vehicle: str, planner: GlobalPlanner, sensors: ObstacleSensors, world_from_map: Pose2) -> None:
+        self._planner, self._vehicle = planner, vehicle
+        self._told: Costmap | None = None
+        self._told_at = -inf
         self._world_from_map, self._map_from_world = world_from_map, inverse(world_from_map)
         self._sensors = sensors
         self._layer = ObstacleLayer(SIZE, RESOLUTION, LIFETIME)
@@ -65,6 +72,14 @@ class PlanningGround:
             self._layer.forget(seen.t)
         self._layer.mark(self._hidden.points(t, here, SIZE / 2), t)
         return self.routes.look(here) or new
+
+    def costmap(self, t: float) -> Grid | None:
+        """What is planned on, for people to see, at ``t`` [s]; None while it is what was told, or was told just now."""
+        costs = self._planner.costs
+        if costs is None or costs is self._told or t - self._told_at < TELL_PERIOD:
+            return None
+        self._told, self._told_at = costs, t
+        return cost_grid(costs.values, costs.resolution, *costs.origin, f"{self._vehicle}/map", t)
 
     def heed(self, directive: Directive) -> None:
         """Forgets what the tracker is to forget."""

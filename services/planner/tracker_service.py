@@ -17,12 +17,14 @@ from schemas.messages import (
     Event,
     Grid,
     LaserScan,
+    MovingObstacles,
     NavDirective,
     NavReport,
     Odometry,
     PoseInFrame,
     PosesInFrame,
     Range,
+    Vector3,
 )
 from services.planner.directives import directive_of, report_message
 from services.planner.masks import MaskReader
@@ -39,12 +41,13 @@ from uvf.planning.local.mppi import Mppi, MppiSettings
 from uvf.planning.local.planner import Limits, LocalPlanner
 from uvf.planning.local.planners import make_local_planner
 from uvf.planning.local.window import WindowSettings
+from uvf.planning.moving.tracks import MovingObjects
 from uvf.planning.navigation.directive import Action, Directive
 from uvf.planning.navigation.execution import Executor
 from uvf.planning.smoothing import first_part
 from uvf.runtime.contract.declaration import Reads, Writes, every, optional, topic
 from uvf.runtime.contract.service import Service
-from uvf.runtime.messages.convert import pose2_of, seconds, stamp, yaw_of
+from uvf.runtime.messages.convert import cost_grid, pose2_of, seconds, stamp, yaw_of
 
 Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
@@ -57,6 +60,7 @@ FARTHEST = 0.95 * SIZE / 2  # m
 HORIZON = 2.8  # s that the local planner looks ahead
 REVERSE = 0.5  # of the speed forwards
 LATERAL_ACCELERATION = 1.5  # m/s^2, beyond which wheels slide
+COSTS_PERIOD = 0.5  # s between two costmaps that are told
 EVENTS_EVERY = 10.0  # s between two events about what is ahead
 
 
@@ -102,6 +106,8 @@ class TrackerService(Service):
 
         drive: DriveCommand | None = topic(topics.DRIVE.by("planner"))
         report: NavReport | None = topic(topics.NAV_REPORT)
+        obstacles: MovingObstacles | None = topic(topics.OBSTACLES)
+        costs: Grid | None = topic(topics.LOCAL_COSTS)
         events: list[Event] | None = topic(topics.EVENTS.by("tracker"))
 
     params: TrackerParams
@@ -115,7 +121,7 @@ class TrackerService(Service):
         self._made_for = params, 1.0
         self._keep_out, self._speed_map = MaskReader(), MaskReader()
         self._executor = Executor(self._controller())
-        self._told_at = self._complained_at = -np.inf
+        self._told_at = self._complained_at = self._costs_told_at = -np.inf
 
     def step(self, t: float, now: Inputs) -> Outputs:
         """One cycle at ``t`` [s, simulation]: what the directive says, slowed before obstacles that the scan shows."""
@@ -141,6 +147,8 @@ class TrackerService(Service):
         return self.Outputs(
             drive=DriveCommand(timestamp=stamp(t), linear=self._velocity[0], angular=self._velocity[1]),
             report=report_message(t, report),
+            obstacles=_moving(seen.t, controller.moving) if seen is not None else None,
+            costs=self._costs(t, controller),
             events=[*self._felt(t), *(self._obstacle(t) if report.how in (Drive.STOPPED, Drive.NO_VALID_CONTROL) else [])],
         )
 
@@ -193,6 +201,14 @@ class TrackerService(Service):
             planner = make_local_planner(params.local_planner, limits, self._footprint)
         return LocalController(self._footprint, limits, planner, settings)
 
+    def _costs(self, t: float, controller: LocalController) -> Grid | None:
+        """For people to see."""
+        if t - self._costs_told_at < COSTS_PERIOD:
+            return None
+        self._costs_told_at = t
+        costs = controller.layer.costmap(self._footprint, controller.settings.inflation)
+        return cost_grid(costs.values, costs.resolution, *costs.origin, "world", t)
+
     def _felt(self, t: float) -> list[Event]:
         """A touch, and what could not be read."""
         bump = [_event(t, "touched something", "bumper")] if self._sensors.bump is not None else []
@@ -207,6 +223,13 @@ class TrackerService(Service):
             return []
         self._told_at = t
         return [_event(t, "obstacle ahead", "lidar")]
+
+
+def _moving(t: float, found: MovingObjects) -> MovingObstacles:
+    told = MovingObstacles(timestamp=stamp(t))
+    for x, y, vx, vy, radius in found.moving().tolist():
+        told.obstacles.add(position=Vector3(x=x, y=y), velocity=Vector3(x=vx, y=vy), radius=radius)
+    return told
 
 
 def _event(t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> Event:

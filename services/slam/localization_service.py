@@ -6,14 +6,14 @@ from math import isfinite
 import numpy as np
 
 from schemas import topics
-from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, PlaceRequest, RelocalizeRequest, Reply
+from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, PlaceRequest, PosesInFrame, RelocalizeRequest, Reply
 from services.slam.placing_service import PlacingService, fix_message
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.declaration import Reads, Writes, frames, optional, replies, request, topic
-from uvf.runtime.messages.convert import pose2_of, pose2_of_frame, stamp
+from uvf.runtime.messages.convert import planar_pose, pose2_of, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.runtime.messages.grids import as_map, as_message
 from uvf.slam.localization.known_map import KnownMap, of_grid
@@ -22,6 +22,7 @@ from uvf.slam.localization.params import FilterParams
 from uvf.slam.reading import Reading
 
 POSITION_SIGMA, YAW_SIGMA = 0.3, 0.2  # m, rad, of a pose that is set without
+PARTICLES_TOLD = 150
 LEAST_SIGMA, MOST_SIGMA = 1e-4, 1000.0
 """m and rad: what is surer, or less sure than a whole map, is a mistake."""
 
@@ -57,6 +58,7 @@ class LocalizationService(PlacingService):
         placing: FrameTransform | None = topic(topics.TF_WORLD)
         map: Grid | None = topic(topics.MAP)
         fix: MapFix | None = topic(topics.MAP_POSE)
+        particles: PosesInFrame | None = topic(topics.PARTICLES)
         events: list[Event] | None = topic(topics.EVENTS.by("localization"))
         pose: list[Reply] = replies(topics.PLACE)
         relocalize: list[Reply] = replies(topics.RELOCALIZE)
@@ -93,6 +95,7 @@ class LocalizationService(PlacingService):
             self._odom_from_base = planar(now.frames.lookup(self._frame("odom"), self._frame("base_footprint")))
             if self._localizer is not None and (reading := self._reading(now.scan, now.frames)) is not None:
                 out.fix, told = self._look(t, self._localizer, reading)
+                out.particles = self._particles(t, self._localizer)
                 events += told
             self._placeless_since = None if self._localizer is not None else self._placeless_since
         except FrameError as error:
@@ -146,6 +149,13 @@ class LocalizationService(PlacingService):
             self._published = self._map_from_odom
         fix = fix_message(reading.t, estimate.map_from_base, estimate.covariance, estimate.quality)
         return fix, self._changed(t, before, localizer)
+
+    def _particles(self, t: float, localizer: Localizer) -> PosesInFrame:
+        """As many as a picture needs, evenly taken by weight (low variance: Thrun et al. 2005, table 4.4)."""
+        poses, weights = localizer.filter.poses, localizer.filter.weights
+        places = np.searchsorted(np.cumsum(weights), (np.arange(PARTICLES_TOLD) + 0.5) / PARTICLES_TOLD * weights.sum())
+        taken = poses[np.minimum(places, len(poses) - 1)].tolist()
+        return PosesInFrame(timestamp=stamp(t), frame_id=self._frame("map"), poses=[planar_pose(*pose) for pose in taken])
 
     def _changed(self, t: float, before: LocalizerState, localizer: Localizer) -> list[Event]:
         if localizer.state is before:

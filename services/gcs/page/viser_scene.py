@@ -8,10 +8,13 @@ import viser
 from numpy.typing import NDArray
 
 from services.gcs.state.vehicle_model import DisplayPose
-from services.gcs.view.drawing import FloorPicture, MeshNode, Node, Points, Polyline, TextNode
+from services.gcs.view.drawing import Axes, Boxes, FloorPicture, MeshNode, Node, Points, Polyline, TextNode
 
 Floats = NDArray[np.float64]
 
+CUBE = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)], dtype=np.float32)
+_QUADS = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+CUBE_FACES = np.array([t for a, b, c, d in _QUADS for t in ((a, b, c), (a, c, d))], dtype=np.uint32)
 MOVED = 1e-3  # m
 TURNED = 1e-3  # quaternion components
 
@@ -74,6 +77,20 @@ class ViserScene:
                 return scene.add_label(name, node.text, position=node.position, anchor="bottom-center")
             case FloorPicture():
                 return self._add_picture(name, node)
+            case Axes():
+                radii = node.length / 25, node.length / 20
+                return scene.add_frame(
+                    name, axes_length=node.length, axes_radius=radii[0], origin_radius=radii[1], wxyz=node.wxyz, position=node.position
+                )
+            case Boxes():
+                return self._add_boxes(name, node)
+
+    def _add_boxes(self, name: str, node: Boxes) -> Any:
+        turns = np.tile(np.array((1.0, 0.0, 0.0, 0.0), dtype=np.float32), (len(node.sides), 1))
+        return self._server.scene.add_batched_meshes_simple(
+            name, CUBE, CUBE_FACES, turns, _f32(node.middles), batched_scales=_f32(node.sides), batched_colors=node.colours, lod="off",
+            flat_shading=True, cast_shadow=False, receive_shadow=False,
+        )  # fmt: skip
 
     def _add_mesh(self, name: str, node: MeshNode) -> Any:
         opacity = None if node.opacity >= 1 else node.opacity

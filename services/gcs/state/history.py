@@ -9,7 +9,7 @@ import numpy as np
 from google.protobuf.message import Message
 from numpy.typing import NDArray
 
-from schemas.messages import CompressedImage, Grid
+from schemas.messages import CompressedImage, Grid, OctreeMap
 from services.gcs.state.event_log import EventLine
 
 Floats = NDArray[np.float64]
@@ -19,7 +19,7 @@ Key = tuple[str, str]
 LENGTH = 600.0  # s
 BUDGET = 256_000_000  # bytes of messages; with more vehicles or larger maps the history is shorter
 STRETCH = 5.0  # s
-THINNED: Mapping[type[Message], float] = {CompressedImage: 0.5, Grid: 2.0}
+THINNED: Mapping[type[Message], float] = {CompressedImage: 0.5, Grid: 2.0, OctreeMap: 10.0}
 """Least time [s] between two that are kept of these, which are large."""
 EVENTS_MOST = 2000
 
@@ -56,7 +56,7 @@ class TimedLine(NamedTuple):
     line: EventLine
 
 
-class History:
+class RecentHistory:
     """Messages of the last ``length`` [s], as long as they fit into ``budget`` [bytes]; times are wall clock [s], rising."""
 
     def __init__(self, length: float = LENGTH, budget: int = BUDGET) -> None:

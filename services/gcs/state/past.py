@@ -6,7 +6,7 @@ from google.protobuf.message import Message
 
 from schemas.messages import Clock, Event, ExternalVehicle, NavState, SimObjects
 from services.gcs.state.event_log import EventHistory
-from services.gcs.state.history import Floats, History, Kept, Key
+from services.gcs.state.history import Floats, Kept, Key, RecentHistory
 from services.gcs.state.state import Model
 from uvf.models.scenario import Scenario
 
@@ -17,7 +17,7 @@ CLOCK, EXTERNAL, OBJECTS, TRUTH = "clock", "external", "objects", "truth"
 class PastModel:
     """The state of the ground station at a moment of its history."""
 
-    def __init__(self, site: Scenario, history: History) -> None:
+    def __init__(self, site: Scenario, history: RecentHistory) -> None:
         self.model = Model(site)
         self._history = history
         self._shown: dict[Key, Kept] = {}

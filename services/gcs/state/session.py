@@ -16,6 +16,11 @@ ROOTS = {
     "Fences": ("/fence",),
     "Tracks": ("/track",),
     "Labels": ("/label", "/height"),
+    "Obstacles": ("/moving",),
+    "Uncertainty": ("/sigma", "/particles"),
+    "Costmaps": ("/costmap", "/costs"),
+    "Octree": ("/octree",),
+    "Frames": ("/frame",),
     "Walls": ("/world/walls",),
     "Team maps": ("/team",),
     "True pose": ("/true",),
@@ -25,7 +30,7 @@ LIVE_ROOTS = ("/vehicles", "/spawned", "/world/moving", *(root for roots in ROOT
 """The nodes that bear all that changes with time."""
 PAST_ROOT = "/past"
 """The node that bears the same as it was at the moment that a browser looks at."""
-SHOWN_AT_FIRST = frozenset(ROOTS) - {"Team maps", "True pose"}
+SHOWN_AT_FIRST = frozenset(ROOTS) - {"Team maps", "True pose", "Costmaps", "Octree", "Frames"}
 VIEWS = ("Scene", "All", "Top", "Follow")
 """From where a scene can be looked at; the first one at first."""
 CONFIRM_WITHIN = 5.0  # s

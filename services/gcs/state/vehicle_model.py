@@ -8,19 +8,25 @@ from numpy.typing import NDArray
 
 from schemas.messages import (
     CompressedImage,
+    EstimateQuality,
     Fence,
     FrameTransform,
+    FrameTransforms,
     GimbalCommand,
     Grid,
     JointStates,
     LaserScan,
+    MapFix,
     Mission,
     MissionProgress,
+    MovingObstacles,
     NavState,
     NavStatus,
+    OctreeMap,
     Odometry,
     PoseInFrame,
     PosesInFrame,
+    RallyPoints,
     VehicleStatus,
 )
 from services.gcs.state.plan_draft import PlanDraft
@@ -83,6 +89,16 @@ class VehicleModel:
     grid: Grid | None = None
     team_map: Grid | None = None
     world_from_map: FrameTransform | None = None
+    fix: MapFix | None = None
+    quality: EstimateQuality | None = None
+    particles: PosesInFrame | None = None
+    obstacles: MovingObstacles | None = None
+    costmap: Grid | None = None
+    local_costs: Grid | None = None
+    octree: OctreeMap | None = None
+    map_from_odom: FrameTransform | None = None
+    tf_static: FrameTransforms | None = None
+    rally: RallyPoints | None = None
     heard_at: dict[str, float] = field(default_factory=dict)
     """Field -> when its newest message came [s, wall]."""
     scan_points: Floats | None = None

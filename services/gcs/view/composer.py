@@ -36,7 +36,8 @@ from services.gcs.view.panels.overview import Overview
 from services.gcs.view.panels.timeline import TimeBar, timeline
 from services.gcs.view.past import PastView
 from services.gcs.view.scene.cameras import ASPECT, cameras
-from services.gcs.view.scene.scene_view import UP, SceneView
+from services.gcs.view.scene.levels import UP
+from services.gcs.view.scene.scene_view import SceneView
 
 Floats = NDArray[np.float64]
 

@@ -64,7 +64,25 @@ class TextNode:
     position: tuple[float, float, float]
 
 
-Node = MeshNode | Polyline | Points | FloorPicture | TextNode
+@dataclass(frozen=True, eq=False)
+class Axes:
+    """The axes of a frame, ``length`` [m] each; position (3,) [m] and quaternion (4,) wxyz in the parent's frame."""
+
+    length: float
+    position: Floats = field(default_factory=lambda: np.zeros(3))
+    wxyz: Floats = field(default_factory=lambda: np.array((1.0, 0.0, 0.0, 0.0)))
+
+
+@dataclass(frozen=True, eq=False)
+class Boxes:
+    """Cubes: middles (n, 3) [m, parent's frame], sides (n,) [m], colours (n, 3) of 0 to 255."""
+
+    middles: Floats
+    sides: Floats
+    colours: NDArray[np.uint8]
+
+
+Node = MeshNode | Polyline | Points | FloorPicture | TextNode | Axes | Boxes
 
 
 @dataclass(frozen=True)

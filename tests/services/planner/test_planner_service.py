@@ -26,7 +26,7 @@ from tests.services.planner.planner_bench import CANCEL, START, Bench, asked, pl
 from tests.services.planner.plans import room
 from uvf.planning import global_planner
 from uvf.planning.search.grid_search import GridSearch
-from uvf.runtime.messages.convert import occupancy_grid
+from uvf.runtime.messages.convert import cost_cells, occupancy_grid
 
 SETTLED = 4 + ceil(SETTLING * PlannerService.hz)  # steps after which who explores no longer stands for its gyroscope
 
@@ -331,3 +331,17 @@ def test_the_path_is_that_of_the_planner_that_was_chosen(name):
     assert path[0] == pytest.approx((1.0, 1.0), abs=0.06)
     assert path[-1] == pytest.approx((3.0, 1.0), abs=0.06)
     assert path[np.abs(path[:, 0] - 2.0) < 0.1, 1].min() > 2.0 + 0.1
+
+
+def test_people_see_what_it_plans_on_every_two_seconds_at_most():
+    bench, told = Bench(), []
+    for n in range(24):
+        if n == 4:
+            bench.grid = occupancy_grid(room(4.0, 3.0), 0.05, 0.0, 0.0, "v/map", bench.t)
+        bench.step()
+        told += [(bench.t, bench.said["costmap"])] if bench.said.get("costmap") is not None else []
+    (first, grid), (second, _) = told
+    assert second - first >= 2.0
+    values, costs = cost_cells(grid), bench.service._planner.costs
+    assert grid.frame_id == "v/map" and grid.fields[0].name == "cost" and np.array_equal(values, costs.values)
+    assert {0, 254} <= set(np.unique(values).tolist())

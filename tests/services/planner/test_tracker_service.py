@@ -14,7 +14,7 @@ from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2, transform
 from uvf.maths.se3 import IDENTITY, Transform
 from uvf.planning.costmap.footprint import RobotFootprint
-from uvf.runtime.messages.convert import occupancy_grid, planar_pose, pose2_of, seconds, stamp
+from uvf.runtime.messages.convert import cost_cells, occupancy_grid, planar_pose, pose2_of, seconds, stamp
 from uvf.sensors.sweeping import AT_ONCE, SPACING, Sweeping
 
 
@@ -26,6 +26,17 @@ def scan(t, ahead, yaw=0.0, around=0.0):
     if around > 0.0:
         ranges = np.full(360, around)
     return LaserScan(timestamp=stamp(t), start_angle=0.0, end_angle=angles[-1], ranges=ranges.tolist())
+
+
+def with_post(seen, x, y, yaw, radius=0.15):
+    """Puts a post at (x, y) [m] from the lidar into a scan."""
+    angles = np.radians(np.arange(360.0)) + yaw
+    middle = x * np.cos(angles) + y * np.sin(angles)
+    inside = radius**2 - (x**2 + y**2 - middle**2)
+    hit = (inside > 0.0) & (middle > 0.0)
+    ranges = np.array(seen.ranges)
+    ranges[hit] = (middle - np.sqrt(np.maximum(inside, 0.0)))[hit]
+    seen.ranges[:] = ranges.tolist()
 
 
 FOOTPRINT = RobotFootprint.circle(BODY.radius)
@@ -45,6 +56,10 @@ class TrackerBench:
         self.places = []
         self.events = []
         self.report = None
+        self.costs = []
+        self.moving = []
+        self.post = None
+        """(x, y) m of something round of 15 cm before the wall."""
 
     def step(self, n, ahead, blind=False, directive=FOLLOW, moves=False, around=0.0, **masks):
         for _ in range(n):
@@ -53,7 +68,12 @@ class TrackerBench:
             poses = [PoseInFrame(timestamp=stamp(self.t - s), pose=planar_pose(x, y, yaw)) for s in (0.08, 0.04, 0.02)]
             seen_at = 0.0 if blind else self.t - 0.03
             told = NOTHING | masks | {"directive": directive, "path": EAST, "pose": poses}
-            out = stepped(self.service, self.t, scan=scan(seen_at, ahead - x, yaw, around), **told)
+            seen = scan(seen_at, ahead - x, yaw, around)
+            if self.post is not None:
+                with_post(seen, self.post[0] - x, self.post[1] - y, yaw)
+            out = stepped(self.service, self.t, scan=seen, **told)
+            self.costs.append(out.get("costs"))
+            self.moving += [out["obstacles"]] if out.get("obstacles") is not None else []
             self.commands.append((out["drive"].linear, out["drive"].angular))
             self.events += [e.text for e in out.get("events", [])]
             self.report = out.get("report")
@@ -244,3 +264,25 @@ def test_parameters_of_the_tracker_count_while_running():
     assert bench.step(8, ahead=4.5).speed == pytest.approx(0.1, abs=0.02)
     bench.service.params = TrackerParams(margin=1.0)
     assert bench.step(5, ahead=0.6).speed <= 0.0
+
+
+def test_people_see_what_it_drives_by():
+    bench = TrackerBench().step(8, ahead=1.0, moves=True)
+    told = [costs for costs in bench.costs if costs is not None]
+    assert len(told) == 2
+    values, (x, y) = cost_cells(told[-1]), (told[-1].pose.position.x, told[-1].pose.position.y)
+    row, column = int((0.0 - y) / 0.05), int((1.02 - x) / 0.05)
+    assert values.shape == (160, 160) and values[row - 1 : row + 2, column - 1 : column + 2].max() == 254
+    assert told[-1].frame_id == "world"
+
+
+def test_people_see_what_it_takes_for_moving():
+    """A post of 15 cm comes along at 0.6 m/s, 1.5 m ahead."""
+    bench = TrackerBench()
+    for n in range(25):
+        bench.post = (1.5, -1.2 + 0.06 * n)
+        bench.step(1, ahead=3.4)
+    ((post,),) = [told.obstacles for told in bench.moving[-1:]]
+    assert (post.position.x, post.position.y) == pytest.approx((1.5, 0.24), abs=0.08)
+    assert (post.velocity.x, post.velocity.y) == pytest.approx((0.0, 0.6), abs=0.12)
+    assert post.radius == pytest.approx(0.15, abs=0.04)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.scene.scene_view import mission_points
 from services.gcs.view.scene.scenery import extent
+from services.gcs.view.scene.way_layers import mission_points
 from uvf.maths.rotations import to_euler
 
 Floats = NDArray[np.float64]

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from services.gcs.export import Exporter, ExportState
-from services.gcs.state.history import LENGTH, History, TimedLine
+from services.gcs.state.history import LENGTH, RecentHistory, TimedLine
 from services.gcs.state.past import PastModel
 from services.gcs.state.past_choice import RATES
 from services.gcs.state.session import BrowserSession
@@ -20,7 +20,7 @@ KINDS = {"mcap": "log (MCAP)", "html": "page (HTML)"}
 class TimeBar(NamedTuple):
     """What the time bar tells of."""
 
-    history: History
+    history: RecentHistory
     exporter: Exporter
     pasts: Mapping[int, PastModel]
     """By page, of those that look at the past."""

@@ -115,6 +115,18 @@ def occupancy_grid(cells: NDArray[np.int8], resolution: float, x: float, y: floa
     return grid
 
 
+def cost_grid(values: NDArray[np.uint8], resolution: float, x: float, y: float, frame: str, t: float) -> Grid:
+    """Message of costs (rows, columns) with the values of ROS' costmap_2d; the rest as for ``occupancy_grid``."""
+    grid = occupancy_grid(values.view(np.int8), resolution, x, y, frame, t)
+    grid.fields[0].name, grid.fields[0].type = "cost", PackedElementField.UINT8
+    return grid
+
+
+def cost_cells(grid: Grid) -> NDArray[np.uint8]:
+    """Costs (rows, columns) of a message, row 0 at the lowest y."""
+    return np.frombuffer(grid.data, dtype=np.uint8).reshape(-1, grid.column_count)
+
+
 def occupancy_cells(grid: Grid) -> NDArray[np.int8]:
     """Cells (rows, columns) of a message, row 0 at the lowest y; -1 unknown, 0 free .. 100 occupied."""
     return np.frombuffer(grid.data, dtype=np.int8).reshape(-1, grid.column_count)

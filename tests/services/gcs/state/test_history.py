@@ -4,7 +4,7 @@ import numpy as np
 
 from schemas.messages import CompressedImage, Event, NavStatus
 from services.gcs.state.event_log import EventLine
-from services.gcs.state.history import STRETCH, History
+from services.gcs.state.history import STRETCH, RecentHistory
 
 
 def status(n):
@@ -13,7 +13,7 @@ def status(n):
 
 def heard(seconds, **bounds):
     """A history of one message each second, which says when it came."""
-    history = History(**bounds)
+    history = RecentHistory(**bounds)
     for t in range(seconds):
         history.hear(float(t), "status", {"ugv": status(t)})
     return history
@@ -31,7 +31,7 @@ def test_each_moment_gives_the_newest_message_of_then():
 
 
 def test_what_stands_for_long_is_there_at_each_moment():
-    history = History()
+    history = RecentHistory()
     history.hear(0.0, "mission", {"uav": status("plan")})
     for t in range(1, 60):
         history.hear(float(t), "status", {"ugv": status(t)})
@@ -39,14 +39,14 @@ def test_what_stands_for_long_is_there_at_each_moment():
 
 
 def test_the_same_message_is_kept_once():
-    history, one = History(), status(1)
+    history, one = RecentHistory(), status(1)
     for t in range(1000):
         history.hear(float(t), "status", {"ugv": one})
     assert len(history.at(999.0)) == 1 and history.at(999.0)["status", "ugv"].t == 0.0
 
 
 def test_what_is_older_than_its_length_is_forgotten_and_what_stood_then_is_not():
-    history = History(length=60.0)
+    history = RecentHistory(length=60.0)
     history.hear(0.0, "mission", {"uav": status("plan")})
     for t in range(1000):
         history.hear(float(t), "status", {"ugv": status(t)})
@@ -59,7 +59,7 @@ def test_what_is_older_than_its_length_is_forgotten_and_what_stood_then_is_not()
 
 
 def test_large_messages_shorten_it_and_pictures_are_thinned():
-    history = History(budget=100_000)
+    history = RecentHistory(budget=100_000)
     for n in range(1000):
         history.hear(n / 10, "image", {"ugv": CompressedImage(data=bytes(2000))})
     # Two each second of 2 kB: 100 kB are 25 s.
@@ -68,7 +68,7 @@ def test_large_messages_shorten_it_and_pictures_are_thinned():
 
 
 def test_only_what_is_more_than_routine_is_a_tick():
-    history = History()
+    history = RecentHistory()
     history.hear(0.0, "status", {"ugv": status(0)})
     for severity in (Event.INFO, Event.NOTICE, Event.ERROR):
         history.note(1.0, [EventLine(0.0, severity, "", "x")])

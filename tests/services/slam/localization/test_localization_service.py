@@ -214,3 +214,12 @@ def test_bad_map_files_are_told_in_a_line(tmp_path):
         with pytest.raises(BadInput, match=words) as refused:
             build(site_with(tmp_path, Maps(known=name, localize="anywhere")))
         assert "\n" not in str(refused.value)
+
+
+def test_people_see_where_its_particles_are(room):
+    way = ellipse(40)
+    known, _ = moved(room, way)
+    said = drive(service(known, anywhere=True), readings(ROOM, way, worse=1.05))
+    spread = [np.ptp([(p.position.x, p.position.y) for p in out["particles"].poses], axis=0).max() for out in said]
+    assert all(len(out["particles"].poses) == localization_service.PARTICLES_TOLD for out in said)
+    assert said[0]["particles"].frame_id == "v/map" and spread[0] > 1.0 and spread[-1] < 0.3

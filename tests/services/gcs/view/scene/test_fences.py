@@ -10,7 +10,7 @@ from schemas.limits import LENGTHS
 from schemas.messages import Fence, FenceZone, Vector3
 from services.gcs.actions import Layer
 from services.gcs.view.drawing import MeshNode, Polyline
-from services.gcs.view.scene import view
+from services.gcs.view.scene import way_layers
 from services.gcs.view.scene.fences import CORNERS, KEEP_OUT, fence_nodes
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
@@ -93,7 +93,7 @@ def test_the_page_shows_it_hides_it_and_takes_it_away(station):
 
 def test_all_zones_of_a_fence_are_drawn_at_once(station, monkeypatch):
     drawn = []
-    monkeypatch.setattr(view, "fence_nodes", lambda fence, *how: drawn.append(fence) or fence_nodes(fence, *how))
+    monkeypatch.setattr(way_layers, "fence_nodes", lambda fence, *how: drawn.append(fence) or fence_nodes(fence, *how))
     zones = [TOWER] * LENGTHS["uvf.v1.Fence.zones"]
     station.script.put(UAV, topics.FENCE, Fence(zones=zones), station.t)
     station.run(0.5)

@@ -12,7 +12,8 @@ from schemas.messages import Clock, FrameTransform, Quaternion, Vector3
 from services.gcs.actions import Layer
 from services.gcs.state.state import Model
 from services.gcs.view.drawing import FloorPicture, MeshNode, Points, Polyline, TextNode
-from services.gcs.view.scene.scene_view import SceneView, floor_picture
+from services.gcs.view.scene.map_layers import floor_picture
+from services.gcs.view.scene.scene_view import SceneView
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import LEGS, UAV, UGV, demo_site, uav_at, ugv_at
 from uvf.models.world.file import Box
