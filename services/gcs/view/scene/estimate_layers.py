@@ -31,7 +31,10 @@ class EstimateLayers:
         }
 
     def _frames(self, v: VehicleModel) -> Nodes:
-        """Those of the map and of odometry in the world, those of the body below the vehicle's frame, each with its name."""
+        """Those of the map and of odometry in the world, those of the body below the vehicle's frame.
+
+        Names that would cover each other are left out.
+        """
         length = 1.0 if v.flies else 0.15
         found: dict[str, Axes] = {}
         for name, chain in (("map", (v.world_from_map,)), ("odom", (v.world_from_map, v.map_from_odom))):
@@ -41,14 +44,21 @@ class EstimateLayers:
         if v.tf_static is not None and v.place is not None:
             found |= {f"/body/{name}": axes for name, axes in fixed_frames(v.tf_static, "base_link", length).items()}
         drawn: Nodes = {}
+        named: list[Floats] = []
         for name, axes in found.items():
-            at = tuple(np.round(np.concatenate((axes.position, axes.wxyz)), 3))
-            about = name.rpartition("/")[2]
-            drawn |= {
-                name + end: node
-                for end, node in self._nodes.make_all(f"frame {v.name}{name}", at, lambda a=axes, n=about: _named(a, n)).items()  # type: ignore[misc]
-            }
+            is_alone = not name.startswith("/body/") or all(float(np.abs(axes.position - at).max()) > length for at in named)
+            named += [axes.position] if name.startswith("/body/") else []
+            drawn |= {name + end: node for end, node in self._axes(v, name, axes, is_alone).items()}
         return drawn
+
+    def _axes(self, v: VehicleModel, name: str, axes: Axes, is_named: bool) -> Nodes:
+        at = (*np.round(np.concatenate((axes.position, axes.wxyz)), 3).tolist(), is_named)
+
+        def draw() -> Nodes:
+            label: Nodes = {"/name": TextNode(name.rpartition("/")[2], (0.0, 0.0, axes.length))} if is_named else {}
+            return {"": axes, **label}
+
+        return self._nodes.make_all(f"frame {v.name}{name}", at, draw)
 
     def _obstacles(self, v: VehicleModel, t: float) -> Nodes:
         if v.obstacles is None or t - v.heard_at["obstacles"] > STALE_AFTER:
@@ -68,10 +78,6 @@ class EstimateLayers:
         if told is None or not told.poses:
             return {}
         return self._nodes.make(f"particles {v.name}", (told, v.world_from_map), lambda: cloud(told, v.world_from_map, 4 * UP))
-
-
-def _named(axes: Axes, name: str) -> Nodes:
-    return {"": axes, "/name": TextNode(name, (0.0, 0.0, axes.length))}
 
 
 def _rounded(covariance: Floats) -> tuple[float, ...]:
