@@ -9,7 +9,7 @@ import msgspec
 from msgspec import Meta
 
 from launch.planning.aircraft import MissionText, airspeed_of, load_aircraft
-from launch.planning.obstacles import highest_ground, prisms_of
+from launch.planning.obstacles import prisms_of
 from uvf.guidance.corners import CornerLimits
 from uvf.guidance.fence_plan import PATH_ROOM
 from uvf.maths.zones import Disc, Polygon
@@ -19,6 +19,7 @@ from uvf.models.scenario import ROOT
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.world.file import WorldFile, load_world
 from uvf.models.yaml_data import BadInput, load_yaml
+from uvf.planning.coverage.aerial import highest_ground
 from uvf.planning.flight.airspace import Airspace, Prism
 from uvf.planning.flight.clearance import Configuration
 from uvf.planning.flight.loiter import plan_loiter

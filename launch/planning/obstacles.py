@@ -11,11 +11,9 @@ from uvf.models.shapes.scene import still
 from uvf.models.shapes.solid import Solid
 from uvf.models.world.file import WorldFile
 from uvf.models.world.geometry import things
-from uvf.models.world.terrain import relief
 from uvf.planning.flight.airspace import Prism
 
 ANY_HEIGHT = 1e6  # m
-GRID = 200  # places a side at which terrain is looked at
 
 
 def prisms_of(world: WorldFile) -> list[Prism]:
@@ -49,12 +47,3 @@ def _half_height(solid: Solid) -> float:
         return float(np.dot(up, solid.size)) / 2
     radius, height = solid.size
     return up[2] * height / 2 + float(np.sqrt(max(1.0 - up[2] ** 2, 0.0))) * radius
-
-
-def highest_ground(world: WorldFile, low: Point, high: Point) -> float:
-    """The highest ground [m, world frame] in the rectangle from ``low`` to ``high`` [m], looked at on a grid; 0 on flat ground."""
-    terrain = relief(world)
-    if terrain is None:
-        return 0.0
-    heights, _ = terrain.at(*np.meshgrid(np.linspace(low[0], high[0], GRID), np.linspace(low[1], high[1], GRID)))
-    return float(heights.max())

@@ -7,8 +7,6 @@ from pathlib import Path
 import numpy as np
 
 from launch.planning.aircraft import MissionText, airspeed_of, load_aircraft
-from launch.planning.obstacles import highest_ground
-from uvf.guidance.corners import CornerLimits
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.importing.areas import read_areas
 from uvf.models.mission.file import Waypoint
@@ -17,17 +15,12 @@ from uvf.models.vehicle.file import VehicleFile
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.world.file import WorldFile, load_world
 from uvf.models.yaml_data import BadInput
+from uvf.planning.coverage.aerial import AerialTask, highest_ground, own_camera, plan_aerial
 from uvf.planning.coverage.camera import SurveyCamera
 from uvf.planning.coverage.field import CoverageField, join_fields, make_field
-from uvf.planning.coverage.ground_speed import GroundSpeed
-from uvf.planning.coverage.mission import SurveyFlight, survey_mission
+from uvf.planning.coverage.mission import SurveyFlight
 from uvf.planning.coverage.plan import CoveragePlan
-from uvf.planning.coverage.planner import plan_coverage
-from uvf.planning.coverage.task import CoverageTask
-from uvf.planning.coverage.vehicles import SurveyAircraft
 
-SETTLING = 1.5  # s, level on the swath's line before it begins
-LEAVING = 0.2  # s, straight on behind it
 APPROACH = 6.0  # s, from where the flight begins to the first waypoint
 VEHICLE = "surveyor"
 SPARE = 1.15, 60.0  # of the planned time, s: how long the run may last
@@ -109,19 +102,13 @@ def plan_survey(wishes: SurveyWishes) -> Survey:
 
 def _planned(wishes: SurveyWishes, file: VehicleFile, params: AirParams, world: WorldFile) -> Survey:
     field = _field(wishes, world)
-    camera = wishes.camera or _own_camera(file)
+    camera = wishes.camera or own_camera(file)
     width = wishes.spacing if wishes.spacing is not None else _of(camera).spacing(wishes.height, wishes.overlaps[0])
     trigger = wishes.trigger if wishes.trigger is not None else _of(camera).trigger_distance(wishes.height, wishes.overlaps[1])
     airspeed = airspeed_of(wishes.vehicle, params, wishes.airspeed)
-    turns = CornerLimits(airspeed, (wishes.wind[1], wishes.wind[0]), params.turn_bank)
-    fastest = airspeed + math.hypot(*wishes.wind)
-    leads = SETTLING * fastest, LEAVING * fastest
-    aircraft = SurveyAircraft(GroundSpeed(airspeed, wishes.wind), turns.radius, leads[0] + turns.ramp / 2, leads[1] + turns.ramp / 2)
-    plan = plan_coverage(CoverageTask(field, width, direction=wishes.direction, seed=wishes.seed), aircraft)
-    if len(plan.swaths) == 0:
-        raise BadInput(f"{wishes.area}: nothing of it is worth a swath {width:.1f} m wide; give a smaller spacing")
-    flight = SurveyFlight(wishes.height + _ground(field, world), trigger, wishes.airspeed or 0.0, *leads)
-    return Survey(wishes, plan, flight, survey_mission(plan, flight), airspeed)
+    height = wishes.height + _ground(field, world)
+    task = AerialTask(height, width, trigger, wishes.airspeed or 0.0, wishes.wind, wishes.direction, wishes.seed)
+    return Survey(wishes, *plan_aerial(field, task, params), airspeed)
 
 
 def _field(wishes: SurveyWishes, world: WorldFile) -> CoverageField:
@@ -143,14 +130,6 @@ def _field(wishes: SurveyWishes, world: WorldFile) -> CoverageField:
 
 
 FARTHEST = 50_000.0  # m from the world's origin, in its tangent plane
-
-
-def _own_camera(file: VehicleFile) -> SurveyCamera | None:
-    """The vehicle's gimbal or camera, taken as looking straight down."""
-    found = file.sensors.gimbal or file.sensors.camera
-    if found is None:
-        return None
-    return SurveyCamera(found.fov, 2 * math.atan(math.tan(found.fov / 2) * found.height / found.width))
 
 
 def _of(camera: SurveyCamera | None) -> SurveyCamera:

@@ -23,9 +23,11 @@ from services.gcs.actions import (
     ShowService,
     ShowTopic,
 )
+from services.gcs.area_actions import PlanPart
 from services.gcs.by_hand import ManualDriving
 from services.gcs.plot_actions import OfPlot
 from services.gcs.plotting import plot
+from services.gcs.state.area_draft import PARTS
 from services.gcs.state.graph_choice import GraphChoice
 from services.gcs.state.session import ROOTS, VIEWS, BrowserSession
 from services.gcs.state.state import Model
@@ -70,6 +72,9 @@ class Browsing:
                 session.theme = theme
             case Shape(_, aspect, touched):
                 session.aspect, session.touched = aspect, touched
+            case PlanPart(_, label):
+                session.plan_part = next((part for part, one in PARTS.items() if one == label), session.plan_part)
+                session.pointed = None
             case ChooseView(_, view) if view in VIEWS:
                 session.view, session.touched = view, False
                 session.views_chosen += 1

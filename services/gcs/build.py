@@ -4,6 +4,7 @@ import sys
 
 from services.gcs.export import LogExporter, NoExporter
 from services.gcs.service import GroundStation
+from services.gcs.surveying import SurveyProcess
 from uvf.models.scenario import Scenario
 from uvf.runtime.bus.address import address_from, router_from
 from uvf.runtime.contract.instances import ServiceInstance
@@ -24,6 +25,6 @@ def build(site: Scenario) -> list[ServiceInstance]:
         page = ViserPage(address, next(iter(cameras(site).values())), exporter.files)
         if address.token:
             sys.stderr.write(f"gcs: the page, for those who have its token: {address.url}\n")
-        return GroundStation(site, page, ZenohWatch(router_from()), exporter)
+        return GroundStation(site, page, ZenohWatch(router_from()), exporter, SurveyProcess())
 
     return [ServiceInstance(GroundStation, make, writes_for=tuple(site.members))]

@@ -38,6 +38,8 @@ from services.gcs.actions import (
     TakeWheel,
     ground_point,
 )
+from services.gcs.area_actions import OfArea
+from services.gcs.area_orders import AreaOrders
 from services.gcs.browsing import Browsing
 from services.gcs.by_hand import ManualDriving
 from services.gcs.handover import ControlHandover
@@ -54,6 +56,7 @@ from services.gcs.state.control import called
 from services.gcs.state.session import OLD_AFTER, BrowserSession
 from services.gcs.state.state import Model
 from services.gcs.state.wording import GIMBAL_MODES, describe
+from services.gcs.surveying import SurveyPlanner
 from services.gcs.time_actions import OfTime
 from services.gcs.time_travel import TimeTravel
 from uvf.control.teleop_drive import SCALINGS, TeleopCommand
@@ -68,7 +71,7 @@ ALSO_IN_THE_PAST = (OfTime, StopAll, AnswerControl, LeaveWheel)
 class Commander:
     """Turns actions into requests, and follows each until it is answered."""
 
-    def __init__(self, model: Model, time: TimeTravel) -> None:
+    def __init__(self, model: Model, time: TimeTravel, surveys: SurveyPlanner) -> None:
         self._model = model
         self.time = time
         self._voice = StopVoice(SOURCE)
@@ -80,7 +83,8 @@ class Commander:
         self._places = PlaceOrders(model, self._orders, self.by_hand, self._maps)
         self._handover = ControlHandover(model, self.by_hand)
         self._run = RunOrders(self._orders)
-        self.planning = Planning(model)
+        self._planning = Planning(model)
+        self._areas = AreaOrders(model, self._orders, surveys)
 
     def act(self, t: float, actions: Sequence[PageAction]) -> Outbox:
         """The messages to send for the actions asked for at ``t`` [s, wall]."""
@@ -133,6 +137,8 @@ class Commander:
                 self._run.ask(t, session, action, out)
             case OfMap():
                 self._maps.ask(t, session, action, out)
+            case OfArea():
+                self._areas.ask(t, session, action, out)
             case OfPlan():
                 self._plan(t, session, action, out)
 
@@ -186,21 +192,21 @@ class Commander:
                 if risky and not session.confirm(vehicle.name, "upload", t):
                     return
                 session.to_confirm = None
-                request: Message = self.planning.upload(vehicle)
+                request: Message = self._planning.upload(vehicle)
                 name = "set_mission"
             case PlanGoTo(_, _, index):
-                request, name, why = self.planning.go_to(index), "current", ""
+                request, name, why = self._planning.go_to(index), "current", ""
             case _ if why := self._orders.reason_against(session, vehicle):
                 self._orders.refuse(t, vehicle, "edit the mission", why)
                 return
             case _:
                 session.pointed = None
-                self.planning.edit(vehicle, action)
+                self._planning.edit(vehicle, action)
                 return
         if self._orders.begin(t, session, vehicle.name, request, why) is not None:
             out.call(name, vehicle.name, request)
             if isinstance(request, MissionRequest):
-                self.planning.sent(vehicle)
+                self._planning.sent(vehicle)
 
     def _stop(self, t: float, session: BrowserSession, engaged: bool, out: Outbox) -> None:
         if engaged:
@@ -234,9 +240,16 @@ class Commander:
                 continue
             accepted = self._orders.settle(t, vehicle, answer)
             if isinstance(answer.request, MissionRequest) and not accepted:
-                self.planning.refused(vehicle)
+                self._planning.refused(vehicle)
+            if not accepted:
+                self._areas.refused(vehicle, answer.request)
             if isinstance(answer.request, GoalRequest) and not accepted:
                 self._places.refused(vehicle)
+
+    def advance(self) -> None:
+        """Goes on with what is worked out over several steps."""
+        self._planning.advance()
+        self._areas.advance()
 
     def expire(self, t: float) -> None:
         """Shows orders that were not answered by ``t`` [s, wall] as refused."""

@@ -3,10 +3,12 @@
 from schemas.messages import Mission, MissionItem, MissionRequest, SetCurrentRequest, Vector3
 from services.gcs.offers import SOURCE
 from services.gcs.planning_actions import (
+    FILE_MOST,
     OfPlan,
     PlanAdd,
     PlanChoose,
     PlanClear,
+    PlanLoad,
     PlanMove,
     PlanRemove,
     PlanSet,
@@ -14,6 +16,7 @@ from services.gcs.planning_actions import (
     PlanTake,
 )
 from services.gcs.state.plan_draft import PLACED, PlanDraft
+from services.gcs.state.plan_file import read_plan, take_areas
 from services.gcs.state.plan_outlook import PlanOutlook, outlook_of
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
@@ -62,8 +65,23 @@ class Planning:
                 draft.chosen = index if draft.chosen != index else -1
             case PlanTake():
                 draft.take(v.mission)
+            case PlanLoad(_, _, name, text):
+                self._load(v, draft, name, text)
             case PlanClear():
                 draft.clear()
+
+    def _load(self, v: VehicleModel, draft: PlanDraft, name: str, text: str) -> None:
+        """All of a file or nothing of it."""
+        try:
+            if len(text) > FILE_MOST:
+                raise BadInput(f"file '{name}': longer than {FILE_MOST} characters: it is no plan of this page")
+            file = read_plan(text, f"file '{name}'")
+        except BadInput as error:
+            v.file_fault = str(error)
+            return
+        v.file_fault = ""
+        draft.replace(file.items)
+        take_areas(file, v.areas.fence, v.areas.rally)
 
     def _height(self, v: VehicleModel) -> float:
         """m, world, of a new item: as the last one, or as the vehicle."""

@@ -7,6 +7,7 @@ import msgspec
 
 from services.gcs.actions import Metres, Name, PageAction
 
+FILE_MOST = 48_000  # characters of a plan file
 Index = Annotated[int, msgspec.Meta(ge=0, le=1000)]
 
 
@@ -86,3 +87,11 @@ class PlanGoTo(OfPlan):
     """Go on with this item of the mission in force."""
 
     index: Index
+
+
+@dataclass(frozen=True)
+class PlanLoad(OfPlan):
+    """Draw what a file holds, in place of what is drawn."""
+
+    name: Name
+    text: Annotated[str, msgspec.Meta(max_length=FILE_MOST + 1)]

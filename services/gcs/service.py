@@ -17,6 +17,7 @@ from schemas.messages import (
     Event,
     ExternalVehicle,
     Fence,
+    FenceRequest,
     FrameTransform,
     FrameTransforms,
     GimbalCommand,
@@ -43,6 +44,7 @@ from schemas.messages import (
     PreviewRequest,
     Processes,
     RallyPoints,
+    RallyRequest,
     RelocalizeRequest,
     Reply,
     SaveMapRequest,
@@ -59,6 +61,7 @@ from services.gcs.offers import SOURCE
 from services.gcs.state import past
 from services.gcs.state.history import RecentHistory
 from services.gcs.state.state import Model
+from services.gcs.surveying import SurveyPlanner
 from services.gcs.time_travel import TimeTravel
 from services.gcs.view.composer import Composer
 from services.gcs.view.drawing import Page
@@ -158,6 +161,8 @@ class GroundStation(Service):
         vehicle_command: list[Answer[VehicleCommandRequest, Reply]] = answers(topics.VEHICLE_COMMAND)
         preview: list[Answer[PreviewRequest, PreviewReply]] = answers(topics.PREVIEW)
         set_mission: list[Answer[MissionRequest, Reply]] = answers(topics.SET_MISSION)
+        set_fence: list[Answer[FenceRequest, Reply]] = answers(topics.SET_FENCE)
+        set_rally: list[Answer[RallyRequest, Reply]] = answers(topics.SET_RALLY)
         current: list[Answer[SetCurrentRequest, Reply]] = answers(topics.SET_CURRENT)
         save_map: list[Answer[SaveMapRequest, Reply]] = answers(topics.SAVE_MAP)
         place: list[Answer[PlaceRequest, Reply]] = answers(topics.PLACE)
@@ -178,6 +183,8 @@ class GroundStation(Service):
         vehicle_command: list[VehicleCommandRequest] = call(topics.VEHICLE_COMMAND)
         preview: list[PreviewRequest] = call(topics.PREVIEW)
         set_mission: list[MissionRequest] = call(topics.SET_MISSION)
+        set_fence: list[FenceRequest] = call(topics.SET_FENCE)
+        set_rally: list[RallyRequest] = call(topics.SET_RALLY)
         current: list[SetCurrentRequest] = call(topics.SET_CURRENT)
         save_map: list[SaveMapRequest] = call(topics.SAVE_MAP)
         place: list[PlaceRequest] = call(topics.PLACE)
@@ -185,14 +192,14 @@ class GroundStation(Service):
         clock_request: list[ClockRequest] = call(topics.CLOCK_REQUEST)
         launch: list[LaunchRequest] = call(topics.LAUNCH)
 
-    def __init__(self, site: Scenario, page: Page, watch: BusWatch, exporter: Exporter) -> None:
+    def __init__(self, site: Scenario, page: Page, watch: BusWatch, exporter: Exporter, surveys: SurveyPlanner) -> None:
         self._page = page
         self._model = Model(site)
         self._exporter = exporter
         self._history = RecentHistory()
         self._logged = 0
         time = TimeTravel(self._model, self._history, exporter)
-        self._commander = Commander(self._model, time)
+        self._commander = Commander(self._model, time, surveys)
         self._listening = BusListening(self._model, watch)
         self._composer = Composer(self._model, self._commander.by_hand, TimeBar(self._history, exporter, time.models))
 
@@ -242,7 +249,7 @@ class GroundStation(Service):
         self._commander.hear(t, answers)
         out = self._commander.act(t, self._page.actions())
         self._commander.expire(t)
-        self._commander.planning.advance()
+        self._commander.advance()
         self._listening.step(t)
         self._history.note(t, self._model.log.since(self._logged))
         self._logged = self._model.log.count

@@ -9,6 +9,7 @@ import pytest
 from services.gcs.export import NoExporter
 from services.gcs.page.viser_page import ViserPage
 from services.gcs.service import GroundStation
+from services.gcs.surveying import SurveyProcess
 from services.gcs.view.scene.cameras import cameras
 from tests.second_try import Shared
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
@@ -41,7 +42,7 @@ class LiveStation:
         site, self.port = with_eyes(demo_site()), free_port()
         self.script = Script()
         self.page = ViserPage(Address(port=self.port), next(iter(cameras(site).values())), {})
-        self.service = GroundStation(site, self.page, LocalWatch(self.script.bus), NoExporter())
+        self.service = GroundStation(site, self.page, LocalWatch(self.script.bus), NoExporter(), SurveyProcess())
         self.shell = ServiceRunner(ServiceInstance(GroundStation, lambda: self.service), self.script.bus)
         self.moving = self.living = True
         self.t = 0.0

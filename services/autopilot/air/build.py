@@ -9,7 +9,6 @@ from services.autopilot.air.config import AutopilotConfig
 from services.autopilot.air.modes.airspeed import reserved
 from services.autopilot.air.modes.follower import FormationLink
 from services.autopilot.air.service import AutopilotAir, AutopilotWingman
-from services.autopilot.plan import item_from_file
 from uvf.control.servos import ServoLimits, Servos
 from uvf.estimation.ekf import datasheet
 from uvf.estimation.estimators import Instruments
@@ -29,6 +28,7 @@ from uvf.models.world.terrain import relief
 from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.fences import fence_message, fencing
+from uvf.runtime.messages.mission_files import item_from_file
 from uvf.runtime.messages.plan_items import plan_items
 
 NEAREST = 1.0  # s behind a leader: what lies ahead of the follower has to be known

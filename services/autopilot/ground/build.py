@@ -4,11 +4,11 @@ from services.autopilot.ground import fence as fences
 from services.autopilot.ground.mission import refusal
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.service import GroundAutopilot
-from services.autopilot.plan import item_from_file
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.fences import fence_message, fencing
+from uvf.runtime.messages.mission_files import item_from_file
 from uvf.sensors.fitted import sweeping_of
 from uvf.sensors.sweeping import AT_ONCE
 

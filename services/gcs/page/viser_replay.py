@@ -16,6 +16,7 @@ from services.gcs.page.viser_ground import dress, light
 from services.gcs.page.viser_scene import ViserScene
 from services.gcs.page.viser_server import guarded_server
 from services.gcs.service import GroundStation
+from services.gcs.surveying import SurveyProcess
 from services.gcs.view.drawing import Picture
 from services.gcs.view.scene.cameras import FOV, cameras
 from services.gcs.watch import WatchedMessage
@@ -129,7 +130,7 @@ def write_replay(log: Path, target: Path) -> None:
         raise BadInput(f"log {log}: has no clock, so nothing moves in it")
     with logged_site(log) as site:
         page = ReplayPage(site, begin / NS)
-        service = GroundStation(site, page, _DeafWatch(), NoExporter())
+        service = GroundStation(site, page, _DeafWatch(), NoExporter(), SurveyProcess())
         bus = LocalBus()
         shell = ServiceRunner(ServiceInstance(GroundStation, lambda: service, writes_for=tuple(site.members)), bus)
         shell.n = first_step_after(begin, shell.type.hz)

@@ -15,7 +15,7 @@ import viser
 from websockets.asyncio.server import ServerConnection
 
 VERSION = f"viser-v{viser.__version__}"
-LARGEST = 16 * 1024  # bytes of a message
+LARGEST = 64 * 1024  # bytes of a message
 MOST_OPEN = 64  # connections to the port, also those that have not said yet what they want
 MOST_BROWSERS = 16
 SILENT_FOR = 10.0  # s; a page tells every 2 s how wide it is, one in a hidden tab at least once a minute
@@ -23,6 +23,8 @@ RATE, BURST = 100.0, 200.0  # messages/s of one browser: a page sends 30 at most
 FAULTS = 20  # more messages of no known form than sound ones, after which a connection is closed
 
 Word = Annotated[str, msgspec.Meta(max_length=2048)]
+Text = Annotated[str, msgspec.Meta(max_length=56_000)]
+"""What the page's script says, with a plan file in it at most; ``page.words`` looks at each part."""
 Name = Annotated[str, msgspec.Meta(max_length=512)]
 Modifier = Annotated[str, msgspec.Meta(max_length=32)] | None
 Pixels = Annotated[int, msgspec.Meta(ge=0, le=100_000)]
@@ -48,7 +50,7 @@ class CameraMessage(msgspec.Struct, tag="ViewerCameraMessage", forbid_unknown_fi
 class Value(msgspec.Struct, forbid_unknown_fields=True):
     """New value of a button, slider, choice or text field, the only attribute that a client may set."""
 
-    value: bool | int | float | Word
+    value: bool | int | float | Text
 
 
 class Update(msgspec.Struct, tag="GuiUpdateMessage", forbid_unknown_fields=True):

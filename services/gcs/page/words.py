@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import msgspec
 
-from services.gcs import actions, map_actions, planning_actions, plot_actions, time_actions
+from services.gcs import actions, area_actions, map_actions, planning_actions, plot_actions, time_actions
 
 WORDS: Mapping[str, type[actions.PageAction]] = {
     "hello": actions.Hello,
@@ -52,12 +52,26 @@ WORDS: Mapping[str, type[actions.PageAction]] = {
     "export": time_actions.ExportMinute,
     "save-map": map_actions.SaveMap,
     "relocalize": map_actions.Relocalize,
+    "plan-part": area_actions.PlanPart,
+    "area-add": area_actions.AreaAdd,
+    "area-move": area_actions.AreaMove,
+    "area-drop": area_actions.AreaDrop,
+    "area-set": area_actions.AreaSet,
+    "area-take": area_actions.AreaTake,
+    "area-clear": area_actions.AreaClear,
+    "area-upload": area_actions.AreaUpload,
+    "zone-begin": area_actions.ZoneBegin,
+    "zone-choose": area_actions.ZoneChoose,
+    "zone-end": area_actions.ZoneEnd,
+    "fence-acts": area_actions.FenceActs,
+    "survey-make": area_actions.SurveyMake,
     "plan-add": planning_actions.PlanAdd,
     "plan-set": planning_actions.PlanSet,
     "plan-move": planning_actions.PlanMove,
     "plan-remove": planning_actions.PlanRemove,
     "plan-shift": planning_actions.PlanShift,
     "plan-choose": planning_actions.PlanChoose,
+    "plan-load": planning_actions.PlanLoad,
     "plan-take": planning_actions.PlanTake,
     "plan-clear": planning_actions.PlanClear,
     "plan-upload": planning_actions.PlanUpload,

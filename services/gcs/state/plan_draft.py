@@ -7,7 +7,7 @@ from typing import Any
 
 from schemas.messages import Mission, MissionItem, Vector3
 
-MOST_ITEMS = 200
+MOST_ITEMS = 500
 NEAR = 1e-3  # m: a place that was moved by less has not been moved
 KINDS: dict[str, Any] = {
     "waypoint": MissionItem.WAYPOINT,
@@ -96,6 +96,11 @@ class PlanDraft:
             self.items[index], self.items[index + by] = self.items[index + by], self.items[index]
             self.chosen = index + by
             self._changed()
+
+    def replace(self, items: Sequence[MissionItem]) -> None:
+        """Takes other items in place of all."""
+        self.items, self.chosen = [_copy(item) for item in items][:MOST_ITEMS], -1
+        self._changed()
 
     def clear(self) -> None:
         """Takes all items out."""

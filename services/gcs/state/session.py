@@ -64,6 +64,8 @@ class BrowserSession:
     views_chosen: int = 0
     layers: set[str] = field(default_factory=lambda: set(SHOWN_AT_FIRST))
     """What it shows of the scene."""
+    plan_part: str = "mission"
+    """What it draws in the tab Plan: a key of ``area_draft.PARTS``."""
     plot: PlotChoice = field(default_factory=PlotChoice)
     camera: str = ""
     """The field of the vehicle whose picture is on show, where it has that camera."""

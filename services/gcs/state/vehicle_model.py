@@ -29,6 +29,7 @@ from schemas.messages import (
     RallyPoints,
     VehicleStatus,
 )
+from services.gcs.state.area_draft import Areas
 from services.gcs.state.plan_draft import PlanDraft
 from services.gcs.state.plan_outlook import PlanOutlook
 from services.gcs.state.tracks import VehicleTrack
@@ -109,6 +110,10 @@ class VehicleModel:
     goal_asked: tuple[float, float] | None = None
     draft: PlanDraft = field(default_factory=PlanDraft)
     """The mission that is drawn for it here."""
+    file_fault: str = ""
+    """Why the last plan file could not be drawn."""
+    areas: Areas = field(default_factory=Areas)
+    """The fence, the rally points and the field that are drawn for it here."""
     outlook: PlanOutlook | None = None
     aim: GimbalCommand = field(default_factory=GimbalCommand)
     """Where its gimbal was last told from here to look."""

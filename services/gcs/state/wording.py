@@ -9,6 +9,7 @@ from schemas.messages import (
     ArmRequest,
     CancelRequest,
     ClockRequest,
+    FenceRequest,
     GimbalCommand,
     GoalRequest,
     LaunchRequest,
@@ -16,6 +17,7 @@ from schemas.messages import (
     Mode,
     ModeRequest,
     PlaceRequest,
+    RallyRequest,
     RelocalizeRequest,
     SaveMapRequest,
     SetCurrentRequest,
@@ -51,6 +53,10 @@ def describe(request: Message) -> str:
             return "look for it in the whole map"
         case MissionRequest():
             return f"mission of {len(request.mission.items)} items"
+        case FenceRequest():
+            return f"fence of {len(request.fence.zones)} zones"
+        case RallyRequest():
+            return f"{len(request.rally.points)} rally points"
         case SetCurrentRequest():
             return f"go on with item {request.index + 1}"
         case VehicleCommandRequest() if request.HasField("home"):

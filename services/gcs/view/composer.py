@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.gcs.by_hand import ManualDriving
+from services.gcs.state.area_draft import Ring
 from services.gcs.state.graph_choice import GraphChoice
 from services.gcs.state.node_graph import NodeGraph
 from services.gcs.state.pointing import Pointed
@@ -43,6 +44,7 @@ Floats = NDArray[np.float64]
 
 HELP = Path(__file__).with_name("panels") / "help.html"
 COLOURS: Mapping[str, Colour] = {"/own/way": (150, 160, 175), "/own/drawn": (140, 150, 168), "/own/flown": (232, 74, 214)}
+AREA: Colour = (90, 200, 250)
 FAST = ("time", "run", "plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
 EVERY = 2
 """Steps between two drawings of these, which tell at once."""
@@ -181,7 +183,7 @@ class Composer:
                 "cameras": lambda: camera_panel.panel(v, session, t),
                 "facts": self._once("facts", v, lambda: facts.facts(v, t)),
                 "plan": lambda: plan.plan_panel(v, session, t),
-                "handles": self._once("handles", v, lambda: plan.handles(v)),
+                "handles": lambda: plan.handles(v, session.plan_part),
             }
         shown = always | {name: in_tabs[name] for name in OF_TAB.get(session.tab, ()) if name in in_tabs}
         if session.past is None:
@@ -231,12 +233,16 @@ class Composer:
         if v is not None and v.outlook is not None and session.tab == "plan":
             lines["/own/drawn"] = ((v.outlook, "drawn"), v.outlook.places)
             lines["/own/flown"] = ((v.outlook, len(v.outlook.line)), v.outlook.line)
+        if v is not None and session.tab == "plan" and (area := v.areas.of(session.plan_part)) is not None:
+            for i, ring in enumerate(area.rings):
+                if (points := outline_of(ring)) is not None:
+                    lines[f"/own/area/{i}"] = ((v.name, session.plan_part, area.edits), points)
         nodes: dict[str, Node] = {}
         for name, (of, points) in lines.items():
             if points is None or len(points) < 2:
                 continue
             if name not in made or made[name][0] != of:
-                made[name] = (of, Polyline(points, COLOURS[name], 3.0))
+                made[name] = (of, Polyline(points, COLOURS.get(name, AREA), 3.0))
             nodes[name] = made[name][1]
         return nodes
 
@@ -249,6 +255,18 @@ def _way(pointed: Pointed | None) -> tuple[object, Floats | None]:
     if found is None:
         return None, None
     return id(found), np.array([(pose.position.x, pose.position.y, 3 * UP) for pose in found.poses]).reshape(-1, 3)
+
+
+def outline_of(ring: Ring) -> Floats | None:
+    """(n, 3) m, world: a drawn ring, closed, on the ground; None where there is nothing to draw."""
+    if ring.radius > 0.0 and ring.corners:
+        turn = np.linspace(0.0, 2 * np.pi, 49)
+        flat = np.array(ring.corners[0]) + ring.radius * np.column_stack((np.cos(turn), np.sin(turn)))
+    elif len(ring.corners) > 1:
+        flat = np.array([*ring.corners, ring.corners[0]])
+    else:
+        return None
+    return np.column_stack((flat, np.full(len(flat), 5 * UP)))
 
 
 def _views(session: BrowserSession) -> Html:

@@ -121,21 +121,28 @@ def load_yaml(path: Path, type_: type[T], fill: Callable[[Any, FileLocation], An
 def read_yaml(path: Path) -> Any:
     """Plain data of a YAML file. Raises BadInput."""
     try:
-        data = _data(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
     except OSError as error:
         raise BadInput(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise BadInput(f"{path}: cannot be read: it is not text in UTF-8") from error
+    return parse_yaml(text, str(path))
+
+
+def parse_yaml(text: str, name: str) -> Any:
+    """Plain data of the text of a YAML file called ``name``. Raises BadInput."""
+    try:
+        data = _data(text)
     except RecursionError as error:
-        raise BadInput(f"{path}: nested too deeply") from error
+        raise BadInput(f"{name}: nested too deeply") from error
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        place = f"{path}:{mark.line + 1}" if mark else str(path)
+        place = f"{name}:{mark.line + 1}" if mark else name
         raise BadInput(f"{place}: not valid YAML: {_one_line(getattr(error, 'problem', None) or error)}") from error
     except (ValueError, TypeError, AttributeError) as error:  # what PyYAML lets through: 2020-13-45, !!int x, !!timestamp x
-        raise BadInput(f"{path}: not valid YAML: {_one_line(error)}") from error
+        raise BadInput(f"{name}: not valid YAML: {_one_line(error)}") from error
     if data is None:
-        raise BadInput(f"{path}: the file is empty")
+        raise BadInput(f"{name}: the file is empty")
     return data
 
 

@@ -99,6 +99,21 @@ class FakeExporter:
         self.closed = True
 
 
+class FakeSurveys:
+    """Notes what is asked for; ``done`` is what has been made."""
+
+    def __init__(self):
+        self.begun = []
+        self.done = []
+
+    def begin(self, name, survey):
+        self.begun.append((name, survey))
+
+    def made(self):
+        taken, self.done = self.done, []
+        return taken
+
+
 class Station:
     """The service on a fake page, with scripted vehicles; ``run`` lets simulation and wall time pass alike."""
 
@@ -107,8 +122,9 @@ class Station:
         self.page = FakePage()
         self.watch = LocalWatch(self.script.bus) if listens else FakeWatch()
         self.exporter = FakeExporter()
+        self.surveys = FakeSurveys()
         self.site = site or demo_site()
-        self.service = GroundStation(self.site, self.page, self.watch, self.exporter)
+        self.service = GroundStation(self.site, self.page, self.watch, self.exporter, self.surveys)
         self.shell = ServiceRunner(ServiceInstance(GroundStation, lambda: self.service), self.script.bus)
         self.t = 0.0
 

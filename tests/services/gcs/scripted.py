@@ -9,6 +9,7 @@ from schemas import topics
 from schemas.messages import (
     Clock,
     Event,
+    FenceRequest,
     GoalRequest,
     Kind,
     LaserScan,
@@ -24,6 +25,7 @@ from schemas.messages import (
     PoseInFrame,
     PosesInFrame,
     PreviewReply,
+    RallyRequest,
     Reply,
     Timestamp,
     Vector3,
@@ -102,6 +104,8 @@ class Script:
                 topics.VEHICLE_COMMAND,
                 topics.SET_MISSION,
                 topics.SET_CURRENT,
+                topics.SET_FENCE,
+                topics.SET_RALLY,
             ):
                 self.bus.serve(request.at(name), lambda query, n=name, r=request: self._answer(n, r, query))
         self.bus.serve(topics.PREVIEW.at(UGV), self._preview)
@@ -131,6 +135,10 @@ class Script:
             self.goal = (message.position.x, message.position.y)
         if self.accept and isinstance(message, ModeRequest):
             self.mode[name] = message.mode
+        if self.accept and isinstance(message, FenceRequest):
+            self.put(name, topics.FENCE, message.fence, 0.0)
+        if self.accept and isinstance(message, RallyRequest):
+            self.put(name, topics.RALLY, message.rally, 0.0)
         if self.accept and isinstance(message, MissionRequest):
             self.put(name, topics.MISSION, message.mission, 0.0)
         reply = Reply(accepted=self.accept, reason="" if self.accept else "the <goal> lies inside a wall")

@@ -7,6 +7,7 @@ from schemas import topics
 from schemas.messages import MissionItem, MissionRequest, SetCurrentRequest
 from services.gcs.actions import OpenTab, Select
 from services.gcs.planning_actions import PlanAdd, PlanChoose, PlanClear, PlanMove, PlanRemove, PlanSet, PlanShift
+from services.gcs.state.plan_draft import MOST_ITEMS
 from tests.services.gcs.fakes import ME, OTHER, Station, click
 from tests.services.gcs.scripted import LEGS, UAV, UGV
 
@@ -135,10 +136,10 @@ def test_what_makes_no_sense_changes_nothing(station, action):
 
 
 def test_a_draft_is_bounded(station):
-    for i in range(400):
+    for i in range(MOST_ITEMS + 100):
         station.page.clicks.append(PlanAdd(ME, UAV, "waypoint", float(i), 0.0))
     station.run(0.2)
-    assert len(draft(station).items) == 200
+    assert len(draft(station).items) == MOST_ITEMS
 
 
 def test_only_who_controls_the_vehicle_edits(station):
@@ -168,4 +169,4 @@ def test_a_rover_is_given_a_mission_without_heights(station):
 def test_handles_hang_over_the_places_of_the_items(station):
     handles = station.page.now.html["handles"]
     assert handles.count("g-handle") == 4
-    assert "data-move='1' data-x='200.00' data-y='150.00' data-z='60.00'" in handles
+    assert "data-move='[&quot;plan-move&quot;, &quot;milvus&quot;, 1]' data-x='200.00' data-y='150.00' data-z='60.00'" in handles

@@ -7,14 +7,13 @@ const EVERY = 100;  // ms between two words about a place
 const STEPS = { ArrowUp: [0, 1], ArrowDown: [0, -1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] };
 
 let held = null, told = 0;
-const vehicle = () => document.querySelector('#gcs-bar .g-shown')?.dataset.name || '';
 const round = value => Math.round(value * 100) / 100;
 
 function move(handle, x, y, last) {
   Object.assign(handle.dataset, { x, y });
   if (!last && performance.now() - told < EVERY) return;
   told = performance.now();
-  say('plan-move', vehicle(), Number(handle.dataset.move), round(x), round(y));
+  say(...JSON.parse(handle.dataset.move), round(x), round(y));
 }
 
 document.addEventListener('pointerdown', event => {

@@ -47,6 +47,13 @@ document.addEventListener('click', event => {
   if (button.dataset.tab) show(button.dataset.tab);
   say(...word(button));
 });
+document.addEventListener('change', async event => {  // a file is read here and told as text
+  const field = event.target.closest('#gcs [data-file]'), file = field?.files[0];
+  if (!file) return;
+  const text = await file.text();
+  say(...JSON.parse(field.dataset.file), file.name.slice(0, 64), text.slice(0, 48001));
+  field.value = '';
+});
 document.addEventListener('change', event => {
   const field = event.target.closest('#gcs [data-do]');
   if (!field || !['INPUT', 'SELECT', 'TEXTAREA'].includes(field.nodeName)) return;

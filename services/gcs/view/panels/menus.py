@@ -25,8 +25,19 @@ def menu(model: Model, session: BrowserSession) -> Html:
         return _hung((at.x, at.y), html("<b>It stands here</b><span>Click where {} looks now</span>{}", vehicle.name, _close()))
     if at.tool == "face":
         return _hung((at.x, at.y), html("<b>Heading</b><span>Click where {} is to look</span>{}", vehicle.name, _close()))
+    if session.tab == "plan" and session.plan_part != "mission":
+        return _hung((at.x, at.y), joined((_adding(at, vehicle, session.plan_part), _close())))
     where = html("<span class='g-where'><span>x {:.1f} m, y {:.1f} m</span><span>{}</span></span>", at.x, at.y, vehicle.name)
     return _hung((at.x, at.y), joined((where, _way(at, vehicle), *_choices(at, vehicle), _close())))
+
+
+def _adding(at: Pointed, v: VehicleModel, part: str) -> Html:
+    """What a click means while an area is drawn."""
+    draft = v.areas.of(part)
+    if draft is None or not draft.rings:
+        return html("<b>Fence</b><span>Add a zone in the tab Plan first</span>")
+    label = "Add rally point" if part == "rally" else "Add corner"
+    return button(label, "area-add", v.name, part, round(at.x, 2), round(at.y, 2), style="g-btn g-main")
 
 
 def _hung(place: tuple[float, float], content: Html) -> Html:

@@ -1,16 +1,21 @@
 """The tab Plan: the mission that is drawn for the vehicle on show, what will come of it, and how it differs from the one in force."""
 
+import json
 from math import degrees
+from urllib.parse import quote
 
 import numpy as np
 
 from schemas.messages import MissionItem
+from services.gcs.state.area_draft import PARTS
 from services.gcs.state.plan_draft import PLACED, PlanDraft, kind_name
+from services.gcs.state.plan_file import plan_text
 from services.gcs.state.plan_outlook import PlanOutlook
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
+from services.gcs.view.panels.areas import area_handles, area_panel, part_choice
 from services.gcs.view.panels.profile import profile
 
 UNPLACED = {"takeoff": "Take-off", "land": "Landing", "return": "Return", "repeat": "Repeat"}
@@ -25,18 +30,38 @@ OF_KIND: dict[int, tuple[tuple[str, str, str], ...]] = {
 
 def plan_panel(v: VehicleModel, session: BrowserSession, t: float) -> Html:
     """The panel at ``t`` [s, wall] as one page sees it."""
+    if session.plan_part != "mission":
+        return html(
+            "<h2 class='g-h'>{} of {}</h2>{}{}",
+            PARTS[session.plan_part],
+            v.name,
+            part_choice(v, session.plan_part),
+            area_panel(v, session.plan_part),
+        )
     draft = v.draft
     outlook = v.outlook if v.outlook is not None and v.outlook.edits == draft.edits else PlanOutlook(draft.edits)
     return html(
-        "<h2 class='g-h'>Mission of {}{}</h2>{}{}{}{}{}",
+        "<h2 class='g-h'>Mission of {}{}</h2>{}{}{}{}{}{}{}",
         v.name,
         html("<span>{}</span>", _total(v, draft, outlook)),
+        part_choice(v, "mission"),
         _state(v, draft, session, outlook, t),
         _table(v, draft),
         _adding(v),
         _remarks(outlook),
         profile(outlook) if v.flies else html(""),
+        _files(v),
     )
+
+
+def _files(v: VehicleModel) -> Html:
+    """To keep what is drawn, and to draw what was kept; the page's script reads and writes the files."""
+    text = plan_text(v.draft.items, v.areas.fence, v.areas.rally)
+    save = html("<a class='g-btn' download='{}-plan.yaml' href='data:application/yaml;charset=utf-8,{}'>Save plan</a>", v.name, quote(text))
+    about = html("data-file='{}' aria-label='Load a plan for {}'", json.dumps(["plan-load", v.name]), v.name)
+    load = html("<label class='g-btn g-file'>Load plan<input type='file' accept='.yaml,.yml' {}></label>", about)
+    fault = html("<p class='g-order g-bad' role='alert'>✖ {}</p>", v.file_fault) if v.file_fault else html("")
+    return html("<div class='g-row g-gap'>{}{}</div>{}", save, load, fault)
 
 
 def _total(v: VehicleModel, draft: PlanDraft, outlook: PlanOutlook) -> str:
@@ -136,8 +161,10 @@ def _remarks(outlook: PlanOutlook) -> Html:
     return joined((fault, *(html("<p class='g-why'>⚠ {}: {}</p>", what, why) for what, why in outlook.advice)))
 
 
-def handles(v: VehicleModel) -> Html:
-    """The places of the drawn items over the scene, to be moved with the pointer or with the arrow keys."""
+def handles(v: VehicleModel, part: str) -> Html:
+    """The places of what is drawn over the scene, to be moved with the pointer or with the arrow keys."""
+    if part != "mission":
+        return area_handles(v, part)
     placed = [(i, item.position) for i, item in enumerate(v.draft.items) if item.kind in PLACED]
     return joined(
         html(
@@ -145,7 +172,7 @@ def handles(v: VehicleModel) -> Html:
             "aria-label='Item {} of {}: drag it, or use the arrow keys'>{}</button>",
             " g-held" if v.draft.chosen == i else "",
             i,
-            i,
+            json.dumps(["plan-move", v.name, i]),
             p.x,
             p.y,
             p.z,

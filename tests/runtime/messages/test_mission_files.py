@@ -6,20 +6,20 @@ import zlib
 import pytest
 
 from schemas.messages import MissionItem
-from services.autopilot import plan
 from uvf.models.mission.file import Waypoint
+from uvf.runtime.messages import mission_files
 from uvf.runtime.messages.plan_ids import mission_id
 
 
 def test_a_line_of_a_mission_file_becomes_an_item():
-    message = plan.item_from_file(Waypoint(x=1.0, y=2.0, z=math.pi, kind="jump", jump_to=3, repeat=-1))
+    message = mission_files.item_from_file(Waypoint(x=1.0, y=2.0, z=math.pi, kind="jump", jump_to=3, repeat=-1))
     assert (message.kind, message.jump_to, message.repeat) == (MissionItem.JUMP, 3, -1)
     assert (message.position.x, message.position.y, message.position.z) == (1.0, 2.0, math.pi)
 
 
 @pytest.mark.parametrize("field", ["acceptance_radius", "hold", "radius", "turns", "speed"])
 def test_no_number_of_a_line_is_left_out(field):
-    assert getattr(plan.item_from_file(Waypoint(x=0.0, y=0.0, **{field: 7.5})), field) == 7.5
+    assert getattr(mission_files.item_from_file(Waypoint(x=0.0, y=0.0, **{field: 7.5})), field) == 7.5
 
 
 def test_an_id_tells_missions_apart():
