@@ -85,6 +85,7 @@ def up(
     mission: MissionArgument = DEMO,
     rate: Annotated[float, typer.Option(callback=within(0.0, 1000.0), help=RATE)] = 1.0,
     gcs: Annotated[bool, typer.Option("--gcs/--no-gcs", help="The page at http://127.0.0.1:8080.")] = True,
+    host: Annotated[str, typer.Option(help="Address at which the page is served; 0.0.0.0 for other machines, with a token.")] = "",
     seconds: Annotated[float | None, typer.Option("--for", callback=within(0.01), help="Seconds after time began to run, to stop.")] = None,
 ) -> None:
     """Start a whole mission: every service in its own process, watched over, until Ctrl-C."""
@@ -92,16 +93,18 @@ def up(
     from launch.up import StartOptions
     from launch.up import up as run_up
     from services.autopilot.mavlink.connection.targets import where_mavlink_goes
-    from uvf.runtime.bus.address import address_from, claim, claim_router, router_from
+    from uvf.runtime.bus.address import HOST, TOKEN, address_from, claim, claim_router, router_from
 
     with bad_input_is_one_line():
         path = settings.mission_path(mission)
         claim_router(router_from())
+        address = address_from(os.environ | ({HOST: host} if host else {}))
         if gcs:
-            claim(address_from())
+            claim(address)
+        os.environ |= {HOST: address.host, TOKEN: address.token}  # the page's process has the token that is printed here
         folder = new_run()
         say(f"mission {path.stem}; logs in {folder}")
-        page = f"page {address_from().url}   " if gcs else ""
+        page = f"page {address.url}   " if gcs else ""
         say(f"{page}{where_mavlink_goes(os.environ)}   Ctrl-C ends")
         raise typer.Exit(run_up(StartOptions(mission, rate, gcs, seconds), folder, say))
 

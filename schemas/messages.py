@@ -35,7 +35,7 @@ from schemas.v1.command_pb2 import (
 )
 from schemas.v1.fence_pb2 import Fence, FenceRequest, FenceZone
 from schemas.v1.link_pb2 import Link
-from schemas.v1.map_pb2 import MapFix, MapReply, MapRequest, MapSession, PlaceRequest, RelocalizeRequest, SaveMapRequest
+from schemas.v1.map_pb2 import MapFix, MappingRequest, MapReply, MapRequest, MapSession, PlaceRequest, RelocalizeRequest, SaveMapRequest
 from schemas.v1.mission_pb2 import (
     CancelRequest,
     FollowRequest,
@@ -54,7 +54,7 @@ from schemas.v1.navigation_pb2 import MovingObstacle, MovingObstacles, NavDirect
 from schemas.v1.octree_pb2 import OctreeMap, OctreeSaveRequest
 from schemas.v1.rally_pb2 import RallyPoints, RallyRequest
 from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
-from schemas.v1.simulator_pb2 import RemoveRequest, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
+from schemas.v1.simulator_pb2 import RemoveRequest, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest, WindRequest
 from schemas.v1.system_pb2 import (
     Event,
     Health,
@@ -142,6 +142,7 @@ __all__ = [
     "MapReply",
     "MapRequest",
     "MapSession",
+    "MappingRequest",
     "Mission",
     "MissionItem",
     "MissionProgress",
@@ -200,4 +201,5 @@ __all__ = [
     "VehicleStatus",
     "WheelCommand",
     "WheelTicks",
+    "WindRequest",
 ]

@@ -220,6 +220,7 @@ AIR_SPAWN = Request(f"{_S}/srv/air/spawn", m.SpawnRequest, m.Reply, "put an airc
 AIR_REMOVE = Request(f"{_S}/srv/air/remove", m.RemoveRequest, m.Reply, "take out an aircraft that was put in")
 AIR_SAVE = Request(f"{_S}/srv/air/save", m.StateRequest, m.Reply, "keep the air simulator's state under a name")
 AIR_RESTORE = Request(f"{_S}/srv/air/restore", m.StateRequest, m.Reply, "go back to a state that was kept")
+WIND = Request(f"{_S}/srv/air/wind", m.WindRequest, m.Reply, "let another mean wind blow in the air simulation")
 AIR_POSE = Request(f"{_S}/srv/air/pose", m.SetPoseRequest, m.Reply, "put an aircraft elsewhere: in steady flight, at z = 0 on its wheels")
 ARM = Request(f"{_V}/srv/arm", m.ArmRequest, m.Reply, "arm or disarm")
 SET_MODE = Request(f"{_V}/srv/mode", m.ModeRequest, m.Reply, "change the flight or drive mode")
@@ -229,6 +230,7 @@ GO_AROUND = Request(f"{_V}/srv/go_around", m.GoAroundRequest, m.Reply, "give up 
 VEHICLE_COMMAND = Request(
     f"{_V}/srv/vehicle_command", m.VehicleCommandRequest, m.Reply, "take off to a height; speed, altitude, home, camera; begin anew"
 )
+MAPPING = Request(f"{_V}/srv/map/mapping", m.MappingRequest, m.Reply, "let the map as it is, go on with it, or begin another one")
 ROUTE = Request(f"{_V}/srv/route", m.RouteRequest, m.Reply, "go to several places: stop at each, pass through, or patrol")
 FOLLOW = Request(f"{_V}/srv/follow", m.FollowRequest, m.Reply, "stay behind another vehicle")
 PREVIEW = Request(f"{_V}/srv/preview", m.PreviewRequest, m.PreviewReply, "is there a way to a place, and what is it like?")

@@ -2,6 +2,7 @@ from foxglove_schemas_protobuf import Grid_pb2 as _Grid_pb2
 from foxglove_schemas_protobuf import Pose_pb2 as _Pose_pb2
 from google.protobuf import timestamp_pb2 as _timestamp_pb2
 from google.protobuf.internal import containers as _containers
+from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor
 from google.protobuf import message as _message
 from typing import ClassVar as _ClassVar, Iterable as _Iterable, Mapping as _Mapping, Optional as _Optional, Union as _Union
@@ -77,3 +78,21 @@ class MapSession(_message.Message):
     timestamp: _timestamp_pb2.Timestamp
     data: bytes
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., data: _Optional[bytes] = ...) -> None: ...
+
+class MappingRequest(_message.Message):
+    __slots__ = ("action", "method", "source")
+    class Action(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+        __slots__ = ()
+        HOLD: _ClassVar[MappingRequest.Action]
+        GO_ON: _ClassVar[MappingRequest.Action]
+        BEGIN: _ClassVar[MappingRequest.Action]
+    HOLD: MappingRequest.Action
+    GO_ON: MappingRequest.Action
+    BEGIN: MappingRequest.Action
+    ACTION_FIELD_NUMBER: _ClassVar[int]
+    METHOD_FIELD_NUMBER: _ClassVar[int]
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    action: MappingRequest.Action
+    method: str
+    source: str
+    def __init__(self, action: _Optional[_Union[MappingRequest.Action, str]] = ..., method: _Optional[str] = ..., source: _Optional[str] = ...) -> None: ...

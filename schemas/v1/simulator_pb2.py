@@ -24,26 +24,29 @@ _sym_db = _symbol_database.Default()
 
 from foxglove_schemas_protobuf import Color_pb2 as foxglove_dot_Color__pb2
 from foxglove_schemas_protobuf import Pose_pb2 as foxglove_dot_Pose__pb2
+from foxglove_schemas_protobuf import Vector3_pb2 as foxglove_dot_Vector3__pb2
 from google.protobuf import timestamp_pb2 as google_dot_protobuf_dot_timestamp__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x16uvf/v1/simulator.proto\x12\x06uvf.v1\x1a\x14\x66oxglove/Color.proto\x1a\x13\x66oxglove/Pose.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"\x91\x01\n\tSimObject\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\r\n\x05shape\x18\x02 \x01(\t\x12\x0c\n\x04size\x18\x03 \x03(\x01\x12\x1c\n\x04pose\x18\x04 \x01(\x0b\x32\x0e.foxglove.Pose\x12\x0c\n\x04mass\x18\x05 \x01(\x01\x12\x1e\n\x05\x63olor\x18\x06 \x01(\x0b\x32\x0f.foxglove.Color\x12\r\n\x05model\x18\x07 \x01(\t\"_\n\nSimObjects\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\"\n\x07objects\x18\x02 \x03(\x0b\x32\x11.uvf.v1.SimObject\"P\n\x0cSpawnRequest\x12!\n\x06object\x18\x01 \x01(\x0b\x32\x11.uvf.v1.SimObject\x12\x0e\n\x06source\x18\x02 \x01(\t\x12\r\n\x05speed\x18\x03 \x01(\x01\"-\n\rRemoveRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0e\n\x06source\x18\x02 \x01(\t\"}\n\x0eSetPoseRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x1c\n\x04pose\x18\x02 \x01(\x0b\x32\x0e.foxglove.Pose\x12\x0e\n\x06source\x18\x03 \x01(\t\x12\r\n\x05speed\x18\x04 \x01(\x01\x12\r\n\x05\x63limb\x18\x05 \x01(\x01\x12\x11\n\tturn_rate\x18\x06 \x01(\x01\">\n\x0cStateRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0e\n\x06source\x18\x02 \x01(\t\x12\x10\n\x08only_ask\x18\x03 \x01(\x08\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x16uvf/v1/simulator.proto\x12\x06uvf.v1\x1a\x14\x66oxglove/Color.proto\x1a\x13\x66oxglove/Pose.proto\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"\x91\x01\n\tSimObject\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\r\n\x05shape\x18\x02 \x01(\t\x12\x0c\n\x04size\x18\x03 \x03(\x01\x12\x1c\n\x04pose\x18\x04 \x01(\x0b\x32\x0e.foxglove.Pose\x12\x0c\n\x04mass\x18\x05 \x01(\x01\x12\x1e\n\x05\x63olor\x18\x06 \x01(\x0b\x32\x0f.foxglove.Color\x12\r\n\x05model\x18\x07 \x01(\t\"_\n\nSimObjects\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\"\n\x07objects\x18\x02 \x03(\x0b\x32\x11.uvf.v1.SimObject\"P\n\x0cSpawnRequest\x12!\n\x06object\x18\x01 \x01(\x0b\x32\x11.uvf.v1.SimObject\x12\x0e\n\x06source\x18\x02 \x01(\t\x12\r\n\x05speed\x18\x03 \x01(\x01\"-\n\rRemoveRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0e\n\x06source\x18\x02 \x01(\t\"}\n\x0eSetPoseRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x1c\n\x04pose\x18\x02 \x01(\x0b\x32\x0e.foxglove.Pose\x12\x0e\n\x06source\x18\x03 \x01(\t\x12\r\n\x05speed\x18\x04 \x01(\x01\x12\r\n\x05\x63limb\x18\x05 \x01(\x01\x12\x11\n\tturn_rate\x18\x06 \x01(\x01\">\n\x0cStateRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0e\n\x06source\x18\x02 \x01(\t\x12\x10\n\x08only_ask\x18\x03 \x01(\x08\"B\n\x0bWindRequest\x12#\n\x08velocity\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06source\x18\x02 \x01(\tb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
 _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'uvf.v1.simulator_pb2', _globals)
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
-  _globals['_SIMOBJECT']._serialized_start=111
-  _globals['_SIMOBJECT']._serialized_end=256
-  _globals['_SIMOBJECTS']._serialized_start=258
-  _globals['_SIMOBJECTS']._serialized_end=353
-  _globals['_SPAWNREQUEST']._serialized_start=355
-  _globals['_SPAWNREQUEST']._serialized_end=435
-  _globals['_REMOVEREQUEST']._serialized_start=437
-  _globals['_REMOVEREQUEST']._serialized_end=482
-  _globals['_SETPOSEREQUEST']._serialized_start=484
-  _globals['_SETPOSEREQUEST']._serialized_end=609
-  _globals['_STATEREQUEST']._serialized_start=611
-  _globals['_STATEREQUEST']._serialized_end=673
+  _globals['_SIMOBJECT']._serialized_start=135
+  _globals['_SIMOBJECT']._serialized_end=280
+  _globals['_SIMOBJECTS']._serialized_start=282
+  _globals['_SIMOBJECTS']._serialized_end=377
+  _globals['_SPAWNREQUEST']._serialized_start=379
+  _globals['_SPAWNREQUEST']._serialized_end=459
+  _globals['_REMOVEREQUEST']._serialized_start=461
+  _globals['_REMOVEREQUEST']._serialized_end=506
+  _globals['_SETPOSEREQUEST']._serialized_start=508
+  _globals['_SETPOSEREQUEST']._serialized_end=633
+  _globals['_STATEREQUEST']._serialized_start=635
+  _globals['_STATEREQUEST']._serialized_end=697
+  _globals['_WINDREQUEST']._serialized_start=699
+  _globals['_WINDREQUEST']._serialized_end=765
 # @@protoc_insertion_point(module_scope)

@@ -1,5 +1,6 @@
 from foxglove_schemas_protobuf import Color_pb2 as _Color_pb2
 from foxglove_schemas_protobuf import Pose_pb2 as _Pose_pb2
+from foxglove_schemas_protobuf import Vector3_pb2 as _Vector3_pb2
 from google.protobuf import timestamp_pb2 as _timestamp_pb2
 from google.protobuf.internal import containers as _containers
 from google.protobuf import descriptor as _descriptor
@@ -77,3 +78,11 @@ class StateRequest(_message.Message):
     source: str
     only_ask: bool
     def __init__(self, name: _Optional[str] = ..., source: _Optional[str] = ..., only_ask: bool = ...) -> None: ...
+
+class WindRequest(_message.Message):
+    __slots__ = ("velocity", "source")
+    VELOCITY_FIELD_NUMBER: _ClassVar[int]
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    velocity: _Vector3_pb2.Vector3
+    source: str
+    def __init__(self, velocity: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., source: _Optional[str] = ...) -> None: ...

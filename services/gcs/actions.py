@@ -57,6 +57,13 @@ class Select(PageAction):
 
 
 @dataclass(frozen=True)
+class FleetTable(PageAction):
+    """Show the fleet as a table too, or no longer."""
+
+    on: bool
+
+
+@dataclass(frozen=True)
 class OpenTab(PageAction):
     """The page shows this tab."""
 
@@ -238,6 +245,21 @@ class SetRate(PageAction):
     """Simulation seconds per second; 0 = as fast as it goes."""
 
     rate: Annotated[float, msgspec.Meta(ge=0.0, le=100.0)]
+
+
+@dataclass(frozen=True)
+class WindForm:
+    """What is written into the form: where the wind comes from [deg from north], and how fast [m/s]."""
+
+    direction: Annotated[str, msgspec.Meta(max_length=20)]
+    speed: Annotated[str, msgspec.Meta(max_length=20)]
+
+
+@dataclass(frozen=True)
+class SetWind(PageAction):
+    """Let another mean wind blow."""
+
+    form: WindForm
 
 
 @dataclass(frozen=True)

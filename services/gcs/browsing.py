@@ -9,6 +9,7 @@ from services.gcs.actions import (
     ChooseView,
     Dress,
     FilterTopics,
+    FleetTable,
     Hello,
     Join,
     Layer,
@@ -66,6 +67,8 @@ class Browsing:
                 plot(self._model, session, action)
             case Beat(_, beat):
                 session.seen = max(session.seen, min(_number(beat), t))
+            case FleetTable(_, on):
+                session.table = on
             case OpenTab(_, tab):
                 session.tab = tab
             case Dress(_, theme):

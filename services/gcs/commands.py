@@ -13,10 +13,12 @@ from schemas.messages import (
     GimbalCommand,
     GoalRequest,
     LaunchRequest,
+    MappingRequest,
     MissionRequest,
     Mode,
     ModeRequest,
     PreviewRequest,
+    WindRequest,
 )
 from services.gcs.actions import (
     AimGimbal,
@@ -33,6 +35,7 @@ from services.gcs.actions import (
     Rescale,
     RunClock,
     SetRate,
+    SetWind,
     Steer,
     StopAll,
     TakeWheel,
@@ -133,7 +136,7 @@ class Commander:
                 self.by_hand.rescale(t, page, key)
             case AimGimbal() | GimbalMode():
                 self._aim(t, session, action, out)
-            case RunClock() | SetRate() | LaunchMission():
+            case RunClock() | SetRate() | SetWind() | LaunchMission():
                 self._run.ask(t, session, action, out)
             case OfMap():
                 self._maps.ask(t, session, action, out)
@@ -231,7 +234,7 @@ class Commander:
         """Takes the answers to earlier requests at ``t`` [s, wall]."""
         for answer in answers:
             vehicle = self._model.vehicles.get(answer.vehicle)
-            if isinstance(answer.request, ClockRequest | LaunchRequest):
+            if isinstance(answer.request, ClockRequest | LaunchRequest | WindRequest):
                 self._orders.settle(t, None, answer)
             if vehicle is None:
                 continue
@@ -241,6 +244,8 @@ class Commander:
             accepted = self._orders.settle(t, vehicle, answer)
             if isinstance(answer.request, MissionRequest) and not accepted:
                 self._planning.refused(vehicle)
+            if accepted and isinstance(answer.request, MappingRequest):
+                self._maps.settled(vehicle, answer.request)
             if not accepted:
                 self._areas.refused(vehicle, answer.request)
             if isinstance(answer.request, GoalRequest) and not accepted:

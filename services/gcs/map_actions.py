@@ -32,3 +32,17 @@ class SaveMap(OfMap):
 @dataclass(frozen=True)
 class Relocalize(OfMap):
     """Look for the vehicle in the whole map."""
+
+
+@dataclass(frozen=True)
+class Mapping(OfMap):
+    """Hold the map as it is, or go on with it."""
+
+    on: bool
+
+
+@dataclass(frozen=True)
+class BeginMap(OfMap):
+    """Begin another map where the vehicle is, with a SLAM method."""
+
+    method: Name

@@ -4,13 +4,14 @@ import re
 
 from google.protobuf.message import Message
 
-from schemas.messages import PlaceRequest, RelocalizeRequest, SaveMapRequest
-from services.gcs.map_actions import OfMap, Relocalize, SaveMap
+from schemas.messages import MappingRequest, PlaceRequest, RelocalizeRequest, SaveMapRequest
+from services.gcs.map_actions import BeginMap, Mapping, OfMap, Relocalize, SaveMap
 from services.gcs.offers import SOURCE
 from services.gcs.orders import OrderBook
 from services.gcs.outbox import Outbox
 from services.gcs.state.pointing import Pointed
 from services.gcs.state.session import BrowserSession
+from services.gcs.state.vehicle_model import VehicleModel
 from uvf.runtime.messages.convert import planar_pose
 
 PLAIN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,39}")
@@ -33,10 +34,24 @@ class MapOrders:
                 key, request, why = "save_map", SaveMapRequest(name=name, source=SOURCE), name_fault
             case Relocalize():
                 key, request, why = "relocalize", RelocalizeRequest(source=SOURCE), ""
+            case Mapping(_, _, on):
+                wanted = MappingRequest.GO_ON if on else MappingRequest.HOLD
+                key, request, why = "mapping", MappingRequest(action=wanted, source=SOURCE), ""
+            case BeginMap(_, vehicle, method):
+                if not session.confirm(vehicle, f"begin {method}", t):
+                    return
+                session.to_confirm = None
+                key, request, why = "mapping", MappingRequest(action=MappingRequest.BEGIN, method=method, source=SOURCE), ""
             case _:
                 return
         if self._orders.begin(t, session, action.vehicle, request, why) is not None:
             out.call(key, action.vehicle, request)
+
+    def settled(self, v: VehicleModel, request: MappingRequest) -> None:
+        """A vehicle has accepted what was asked of its mapping."""
+        v.mapping.held = request.action == MappingRequest.HOLD
+        if request.action == MappingRequest.BEGIN:
+            v.mapping.method = request.method
 
     def place(self, t: float, session: BrowserSession, at: Pointed, yaw: float, out: Outbox) -> None:
         """The vehicle is where the page has clicked, and looks along ``yaw`` [rad, world]."""

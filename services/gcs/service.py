@@ -28,6 +28,7 @@ from schemas.messages import (
     LaserScan,
     LaunchRequest,
     MapFix,
+    MappingRequest,
     Mission,
     MissionProgress,
     MissionRequest,
@@ -53,6 +54,7 @@ from schemas.messages import (
     StopCommand,
     VehicleCommandRequest,
     VehicleStatus,
+    WindRequest,
 )
 from services.gcs.commands import Commander
 from services.gcs.export import Exporter
@@ -166,8 +168,10 @@ class GroundStation(Service):
         current: list[Answer[SetCurrentRequest, Reply]] = answers(topics.SET_CURRENT)
         save_map: list[Answer[SaveMapRequest, Reply]] = answers(topics.SAVE_MAP)
         place: list[Answer[PlaceRequest, Reply]] = answers(topics.PLACE)
+        mapping: list[Answer[MappingRequest, Reply]] = answers(topics.MAPPING)
         relocalize: list[Answer[RelocalizeRequest, Reply]] = answers(topics.RELOCALIZE)
         clock_request: list[Answer[ClockRequest, Reply]] = answers(topics.CLOCK_REQUEST)
+        wind: list[Answer[WindRequest, Reply]] = answers(topics.WIND)
         launch: list[Answer[LaunchRequest, Reply]] = answers(topics.LAUNCH)
 
     class Outputs(Writes):
@@ -188,8 +192,10 @@ class GroundStation(Service):
         current: list[SetCurrentRequest] = call(topics.SET_CURRENT)
         save_map: list[SaveMapRequest] = call(topics.SAVE_MAP)
         place: list[PlaceRequest] = call(topics.PLACE)
+        mapping: list[MappingRequest] = call(topics.MAPPING)
         relocalize: list[RelocalizeRequest] = call(topics.RELOCALIZE)
         clock_request: list[ClockRequest] = call(topics.CLOCK_REQUEST)
+        wind: list[WindRequest] = call(topics.WIND)
         launch: list[LaunchRequest] = call(topics.LAUNCH)
 
     def __init__(self, site: Scenario, page: Page, watch: BusWatch, exporter: Exporter, surveys: SurveyPlanner) -> None:

@@ -161,8 +161,17 @@ class Aircraft:
                 self.charge.draw(0.0 if self.wreck else self.body.motor_power, self.dt)
         self.motion = self.wreck.motion if self.wreck else self.body.motion()
 
+    def blow(self, steady: Floats) -> None:
+        """Puts it into another mean wind (3,) [m/s, world], without shear."""
+        if self.air_mass is None:
+            return
+        self.air_mass.blow(steady)
+        if self.air_mass.is_steady:
+            self.wind = self.air_mass.mean(self.body.flight().height)
+            self.body.set_wind(AirMotion(self.wind, CALM))
+
     def _step(self) -> None:
-        if self.air_mass is not None:
+        if self.air_mass is not None and not self.air_mass.is_steady:
             moving = self.air_mass.step(self.physics_steps * self.dt, self.dt, self.body.flight())
             self.body.set_wind(moving)
             self.wind = moving.velocity

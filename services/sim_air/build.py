@@ -169,7 +169,7 @@ def _aircraft(site: Scenario, land: Land, member: MissionVehicle, airframe: Airf
     now, level = _begun(land, member, airframe, begin, air)
     aircraft = Aircraft(member.name, member.file, airframe, Actuators(now, body), level)
     aircraft.begin = partial(_begin, site, land, member)
-    aircraft.wind, aircraft.air_mass = air.mean(begin.z), None if air.is_steady else air
+    aircraft.wind, aircraft.air_mass = air.mean(begin.z), air
     fitted = member.file.sensors
     if fitted.imu is not None:
         aircraft.imu = Imu(fitted.imu, np.array(site.world.magnetic_field), site.rng(member.name, "imu"))

@@ -24,6 +24,7 @@ from schemas.messages import (
     SpawnRequest,
     StateRequest,
     SurfaceCommand,
+    WindRequest,
 )
 from services.sim_air import readings
 from services.sim_air.aircraft import Aircraft
@@ -54,6 +55,7 @@ class SimAir(Service):
         spawn: list[SpawnRequest] = request(topics.AIR_SPAWN)
         remove: list[RemoveRequest] = request(topics.AIR_REMOVE)
         set_pose: list[SetPoseRequest] = request(topics.AIR_POSE)
+        wind: list[WindRequest] = request(topics.WIND)
         save: list[StateRequest] = request(topics.AIR_SAVE)
         restore: list[StateRequest] = request(topics.AIR_RESTORE)
 
@@ -75,6 +77,7 @@ class SimAir(Service):
         spawn: list[Reply] = replies(topics.AIR_SPAWN)
         remove: list[Reply] = replies(topics.AIR_REMOVE)
         set_pose: list[Reply] = replies(topics.AIR_POSE)
+        wind: list[Reply] = replies(topics.WIND)
         save: list[Reply] = replies(topics.AIR_SAVE)
         restore: list[Reply] = replies(topics.AIR_RESTORE)
 
@@ -103,6 +106,7 @@ class SimAir(Service):
         out.spawn = [stage.spawn(flown, r, grounded) for r in now.spawn]
         out.remove = [stage.remove(r) for r in now.remove]
         out.set_pose = [stage.set_pose(r) for r in now.set_pose]
+        out.wind = [stage.blow(r) for r in now.wind]
         out.save = [stage.save(n, r) for r in now.save]
         out.restore = [stage.restore(n, r) for r in now.restore]
         out.spawned = self._spawned(t)

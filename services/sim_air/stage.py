@@ -4,7 +4,10 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest, WindRequest
 from services.sim_air.aircraft import Aircraft, SavedAircraft
 from services.sim_air.contact.collisions import Collisions
 from services.sim_air.contact.surroundings import Around
@@ -12,10 +15,14 @@ from services.sim_air.placing import fault_of, place, start_of
 from uvf.maths.bvh import Bvh
 from uvf.models.mission import file as mission_file
 from uvf.models.yaml_data import BadInput, listed, nearest
-from uvf.runtime.messages.convert import quaternion, stamp, vector
+from uvf.runtime.messages.convert import array, quaternion, stamp, vector
 from uvf.runtime.messages.spawned import crowd_fault, name_fault
 
 SAVED_MOST = 16
+STRONGEST = 60.0  # m/s, a hurricane's
+
+
+Floats = NDArray[np.float64]
 
 
 class JoiningAircraft(NamedTuple):
@@ -50,10 +57,22 @@ class AirStage:
         """Steps by which the aircraft's time is behind the clock, because of states that were restored."""
         self.told: set[str] = set()
         """Aircraft whose frames have been told."""
+        self._steady: Floats | None = None
+        """The mean wind that somebody has asked for; None: that of the mission."""
         self._taken = taken
         self._join = join
         self._spawned: dict[str, tuple[SimObject, Bvh]] = {}
         self._kept: dict[str, KeptWorld] = {}
+
+    def blow(self, request: WindRequest) -> Reply:
+        """Lets another mean wind blow, also about those that come later."""
+        steady = array(request.velocity)
+        if np.linalg.norm(steady) > STRONGEST:
+            return Reply(reason=f"a wind of {np.linalg.norm(steady):.0f} m/s; give {STRONGEST:g} m/s at most")
+        self._steady = steady
+        for craft in self.aircraft.values():
+            craft.blow(steady)
+        return Reply(accepted=True)
 
     def spawn(self, t: float, request: SpawnRequest, others: Collection[str]) -> Reply:
         """Adds an aircraft at ``t`` [s]. others: names of what the ground simulator has spawned."""
@@ -78,6 +97,8 @@ class AirStage:
 
     def _put_in(self, craft: Aircraft, told: SimObject, shape: Bvh) -> None:
         self.aircraft[craft.name] = craft
+        if self._steady is not None:
+            craft.blow(self._steady)
         self._spawned[craft.name] = (SimObject(name=craft.name, model=told.model), shape)
         self.around.add_aircraft(craft.name, shape)
         self.collisions.add(craft.name, shape)

@@ -54,14 +54,14 @@ def _hosts(site: Scenario, member: MissionVehicle, warm: set[str]) -> list[Servi
             warm_up_localization()
             warm.add("localization")
         return [_odometry(site, member), _localization(site, member, lidar, maps)]
-    method = _method(member, mapping)
+    method = _method(member, mapping.method)
     if mapping.method not in warm:
         warm_up(method())
         warm.add(mapping.method)
     left = _left(site, member, mapping, maps.continues) if maps is not None and maps.continues is not None else None
 
     def make() -> MappingService:
-        return MappingService(member.name, lidar, world_from_map, mapping, method(), left)
+        return MappingService(member.name, lidar, world_from_map, mapping, lambda name: _method(member, name)(), left)
 
     return [_odometry(site, member), ServiceInstance(MappingService, make, member.name)]
 
@@ -69,7 +69,7 @@ def _hosts(site: Scenario, member: MissionVehicle, warm: set[str]) -> list[Servi
 def _left(site: Scenario, member: MissionVehicle, mapping: MappingParams, name: str) -> MappingSession:
     """The session that a mapping goes on with, in the vehicle's map frame. Raises BadInput where it cannot."""
     assert member.entry.maps is not None
-    path, method = site.mission_path.parent / name, _method(member, mapping)()
+    path, method = site.mission_path.parent / name, _method(member, mapping.method)()
     map_from_file = compose(inverse(_world_from_map(member)), Pose2(*member.entry.maps.known_at))
     session = MappingSession.load(path).moved(map_from_file)
     if not isinstance(method, Resumable):
@@ -108,9 +108,9 @@ def _localization(site: Scenario, member: MissionVehicle, lidar: Lidar, maps: Ma
     return ServiceInstance(LocalizationService, lambda: LocalizationService(member.name, lidar, start, params, beginning), member.name)
 
 
-def _method(member: MissionVehicle, mapping: MappingParams) -> Callable[[], SlamMethod]:
-    """Makes it by the name that the vehicle's file gives, with the parameters of that name. Raises BadInput."""
+def _method(member: MissionVehicle, name: str) -> Callable[[], SlamMethod]:
+    """Makes it by its name, with the parameters that the vehicle's file has for that name. Raises BadInput."""
     path = str(member.folder / "vehicle.yaml")
-    if mapping.method not in METHODS:
-        raise BadInput(f"{path}: params.mapping.method: no SLAM method '{mapping.method}'; {nearest(mapping.method, METHODS)}")
-    return partial(make_method, mapping.method, member.params(mapping.method, METHODS[mapping.method].params))
+    if name not in METHODS:
+        raise BadInput(f"{path}: params.mapping.method: no SLAM method '{name}'; {nearest(name, METHODS)}")
+    return partial(make_method, name, member.params(name, METHODS[name].params))

@@ -1,24 +1,27 @@
 """Lidar scans and frames -> the map, and where the odometry frame lies in it."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
 from typing import Annotated
 
+import msgspec
 import numpy as np
 from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MapSession, Odometry
+from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MappingRequest, MapSession, Odometry, Reply
 from services.slam.odometry.messages import rate_sigmas
 from services.slam.placing_service import PlacingService, fix_message
+from services.slam.warm_up import warm_up
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
 from uvf.models.keys import key, plain
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.declaration import Reads, Writes, frames, optional, topic
+from uvf.runtime.contract.declaration import Reads, Writes, frames, optional, replies, request, topic
 from uvf.runtime.messages.convert import occupancy_grid, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.slam.maps.session import MappingSession
@@ -43,6 +46,10 @@ class MappingParams(PlacingParams, frozen=True):
     session_period: Annotated[Positive, key("s", "Time between publications of the session.")] = 10.0
 
 
+MakeMethod = Callable[[str], SlamMethod]
+_POOL = ThreadPoolExecutor(1, "slam-method")
+
+
 class MappingService(PlacingService):
     """One map per vehicle, begun at the mission's start pose; ``correction`` is ``map_from_odom`` without jumps, ``fix`` is raw."""
 
@@ -55,6 +62,7 @@ class MappingService(PlacingService):
         scan: LaserScan = topic(topics.SCAN)
         frames: FrameBuffer = frames()
         odometry: Odometry | None = optional(topics.ODOMETRY)
+        mapping: list[MappingRequest] = request(topics.MAPPING)
 
     class Outputs(Writes):
         """Frames, map, pose in the map, session and events."""
@@ -65,6 +73,7 @@ class MappingService(PlacingService):
         fix: MapFix | None = topic(topics.MAP_POSE)
         session: MapSession | None = topic(topics.MAP_SESSION)
         events: list[Event] | None = topic(topics.EVENTS.by("mapping"))
+        mapping: list[Reply] = replies(topics.MAPPING)
 
     class Recalls(Reads):
         """Latched messages from which a restarted instance resumes."""
@@ -81,13 +90,17 @@ class MappingService(PlacingService):
         lidar: Lidar,
         world_from_map: Pose2,
         params: MappingParams,
-        method: SlamMethod,
+        make: MakeMethod,
         left: MappingSession | None = None,
     ) -> None:
-        """left: a session to go on with, in the vehicle's map frame."""
+        """make: makes a method by its name; left: a session to go on with, in the vehicle's map frame."""
         self.params = params
         super().__init__(vehicle, lidar, world_from_map)
-        self._method = method
+        self._make = make
+        self._method = make(params.method)
+        self._next: tuple[str, Future[SlamMethod]] | None = None
+        """The method that is to begin another map, as soon as it is made."""
+        self._held = False
         self._map = TileMap(params.resolution)
         self._map_from_first = IDENTITY
         self._begun_elsewhere = left is not None
@@ -99,17 +112,19 @@ class MappingService(PlacingService):
 
     def step(self, t: float, now: Inputs) -> Outputs:
         """One cycle at ``t`` [s, simulation]: adds a new scan to the map, and publishes the odometry frame in it."""
-        out = self.Outputs()
-        events: list[Event] = []
+        out = self.Outputs(mapping=[self._asked(request) for request in now.mapping])
+        events = self._begin_another(t)
         try:
             self._odom_from_base = planar(now.frames.lookup(self._frame("odom"), self._frame("base_footprint")))
             if (reading := self._reading(now.scan, now.frames)) is not None:
                 if now.odometry is not None:
                     reading = replace(reading, rate_sigmas=rate_sigmas(now.odometry))
-                out.fix, events = self._look(t, reading)
+                out.fix, told = (None, []) if self._held else self._look(t, reading)
+                events += told
             self._placeless_since = None
         except FrameError as error:
-            return self.Outputs(events=self._wait(t, str(error)))
+            out.events = events + self._wait(t, str(error))
+            return out
         out.correction = self._correction(t)
         if not self._placed:
             out.placing = self._transform(t, "world", "map", self._world_from_map)
@@ -120,6 +135,38 @@ class MappingService(PlacingService):
             events += self._cannot_draw(t, str(error))
         out.session, out.events = self._session(t), events + self._notes(t)
         return out
+
+    def _asked(self, request: MappingRequest) -> Reply:
+        if request.action == MappingRequest.BEGIN:
+            name = request.method or self.params.method
+            try:
+                self._make(name)
+            except BadInput as error:
+                return Reply(reason=str(error))
+            self._next = name, _POOL.submit(self._made, name)
+        elif request.action not in (MappingRequest.HOLD, MappingRequest.GO_ON):
+            return Reply(reason=f"there is no action {request.action}")
+        self._held = request.action == MappingRequest.HOLD
+        return Reply(accepted=True)
+
+    def _made(self, name: str) -> SlamMethod:
+        warm_up(self._make(name))
+        return self._make(name)
+
+    def _begin_another(self, t: float) -> list[Event]:
+        """With the method that was asked for, where the vehicle is: its code may have to be compiled first, in another thread."""
+        if self._next is None or not self._next[1].done():
+            return []
+        (name, made), self._next = self._next, None
+        self._method, self._map = made.result(), TileMap(self.params.resolution)
+        self.params = msgspec.structs.replace(self.params, method=name)
+        self._left, self._begun_elsewhere, self._undrawn = None, True, False
+        self._map_from_first = IDENTITY
+        self._map_time = self._session_time = -np.inf
+        self._drawn = self._kept = self._noted = 0
+        return [
+            Event(timestamp=stamp(t), severity=Event.NOTICE, text="another map is begun", cause=f"with method {name}", source="mapping")
+        ]
 
     def recall(self, left: Recalls) -> None:
         """Resumes at the last pose, with the session published last if the method can; otherwise it begins a new map there."""

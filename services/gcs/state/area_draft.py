@@ -1,4 +1,4 @@
-"""Areas that are being drawn for a vehicle: its fence, its rally points, and what it is to survey."""
+"""DrawnAreas that are being drawn for a vehicle: its fence, its rally points, and what it is to survey."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -148,7 +148,7 @@ class SurveyDraft(AreaDraft):
 
 
 @dataclass
-class Areas:
+class DrawnAreas:
     """All that is drawn for one vehicle beside its mission."""
 
     fence: FenceDraft = field(default_factory=FenceDraft)

@@ -54,6 +54,8 @@ class BrowserSession:
     operator: str = ""
     """Who sits before it: the token that the browser keeps; "" until it has said so."""
     tab: str = ""
+    table: bool = False
+    """Whether it shows the fleet as a table."""
     theme: str = "light"
     aspect: float | None = None
     """Width over height [-] of its 3-D view; None until it has told."""

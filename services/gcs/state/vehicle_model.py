@@ -29,7 +29,7 @@ from schemas.messages import (
     RallyPoints,
     VehicleStatus,
 )
-from services.gcs.state.area_draft import Areas
+from services.gcs.state.area_draft import DrawnAreas
 from services.gcs.state.plan_draft import PlanDraft
 from services.gcs.state.plan_outlook import PlanOutlook
 from services.gcs.state.tracks import VehicleTrack
@@ -61,6 +61,15 @@ class Order:
     at: float  # s, wall
     state: str = "sent"  # sent | accepted | refused
     reason: str = ""
+
+
+@dataclass
+class MappingState:
+    """How its map is drawn, as far as it was told from here."""
+
+    held: bool = False
+    method: str = ""
+    """The SLAM method that another map was begun with; "" for the one of the vehicle's file."""
 
 
 @dataclass
@@ -110,9 +119,10 @@ class VehicleModel:
     goal_asked: tuple[float, float] | None = None
     draft: PlanDraft = field(default_factory=PlanDraft)
     """The mission that is drawn for it here."""
+    mapping: MappingState = field(default_factory=MappingState)
     file_fault: str = ""
     """Why the last plan file could not be drawn."""
-    areas: Areas = field(default_factory=Areas)
+    areas: DrawnAreas = field(default_factory=DrawnAreas)
     """The fence, the rally points and the field that are drawn for it here."""
     outlook: PlanOutlook | None = None
     aim: GimbalCommand = field(default_factory=GimbalCommand)

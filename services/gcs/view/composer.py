@@ -45,6 +45,7 @@ Floats = NDArray[np.float64]
 HELP = Path(__file__).with_name("panels") / "help.html"
 COLOURS: Mapping[str, Colour] = {"/own/way": (150, 160, 175), "/own/drawn": (140, 150, 168), "/own/flown": (232, 74, 214)}
 AREA: Colour = (90, 200, 250)
+SHED_AFTER = 1.0  # s that a browser may be behind until it gets no more pictures
 FAST = ("time", "run", "plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
 EVERY = 2
 """Steps between two drawings of these, which tell at once."""
@@ -54,6 +55,7 @@ SLOW = (
     "mapping",
     "plot",
     "fleet",
+    "table",
     "cameras",
     "facts",
     "overview",
@@ -131,6 +133,8 @@ class Composer:
         new = not words or before != on_show
         draws = self._words(session, chosen, t)
         words = {name: content for name, content in words.items() if name in draws}
+        if session.behind(t) > SHED_AFTER:  # a slow browser keeps the picture that it has: words and poses come first
+            draws.pop("picture", None)
         words |= self._due(draws, new)
         self._own[session.page] = (on_show, words)
         nodes: Mapping[str, Node] = self._preview(session)
@@ -155,6 +159,7 @@ class Composer:
             "alerts": self._once("alerts", None, lambda: status.alert_lines(model, t)),
             "notices": self._once("notices", None, lambda: status.notices(model, t)),
             "overview": self._once("overview", v, lambda: self._overview.svg(v)),
+            "table": self._once("table", None, lambda: fleet.fleet_table(model, t)) if session.table else _nothing,
             "views": lambda: _views(session),
             "time": lambda: timeline(self._time_bar, session, self._sim_time(session), t),
             "layers": lambda: _layers(session),
@@ -179,7 +184,7 @@ class Composer:
                 "instrument": self._once("instrument", v, lambda: facts.instrument(v)),
                 "wheel": lambda: teleoperation.wheel(v, self._by_hand, session.page),
                 "picture": lambda: camera_panel.picture(v, session, t),
-                "mapping": self._once("mapping", v, lambda: map_panel.map_panel(v)),
+                "mapping": lambda: map_panel.map_panel(v, session, t),
                 "cameras": lambda: camera_panel.panel(v, session, t),
                 "facts": self._once("facts", v, lambda: facts.facts(v, t)),
                 "plan": lambda: plan.plan_panel(v, session, t),

@@ -41,6 +41,10 @@ class AirMass:
         self._entered = [0.0] * len(wind.gusts)  # m of air flown since the beginning of each gust that has a time
         self.is_steady = not (wind.shear or wind.gusts or wind.turbulence)
 
+    def blow(self, steady: Floats) -> None:
+        """Takes another mean wind (3,) [m/s, world], without shear."""
+        self._steady = steady
+
     def mean(self, height: float) -> Floats:
         """Mean wind (3,) [m/s, world] at ``height`` [m above the ground], without gusts."""
         shear = self._wind.shear

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.messages import PlaceRequest, RelocalizeRequest, Reply, SaveMapRequest
+from schemas.messages import MappingRequest, PlaceRequest, RelocalizeRequest, Reply, SaveMapRequest
 from services.gcs.actions import Point
 from services.gcs.page.words import action_in
 from tests.services.gcs.fakes import ME, Station, click
@@ -82,3 +82,34 @@ def test_one_that_draws_its_map_is_not_asked_where_it_stands():
     station.press(click(4.0, 3.0), seconds=0.3)
     assert "It stands here and looks …" not in station.page.now.words
     station.press(Point(ME, ""))
+
+
+def mapping_station():
+    station = Station()
+    station.heard = []
+    station.script.bus.serve(topics.MAPPING.at(UGV), lambda query: answer(station, topics.MAPPING, query))
+    station.run(1.0)
+    return station
+
+
+def test_the_map_is_held_and_gone_on_with():
+    station = mapping_station()
+    station.push("❚❚ Hold the map", seconds=0.5)
+    station.push("▶ Go on mapping", seconds=0.5)
+    assert [request.action for request in station.heard] == [MappingRequest.HOLD, MappingRequest.GO_ON]
+    assert "❚❚ Hold the map" in station.page.now.words
+
+
+def test_another_map_takes_two_clicks_and_shows_its_method():
+    station = mapping_station()
+    station.push("hector", seconds=0.3)
+    assert not station.heard
+    station.push("Confirm: hector", seconds=0.6)
+    ((request,)) = station.heard
+    assert (request.action, request.method) == (MappingRequest.BEGIN, "hector")
+    assert station.model.vehicles[UGV].mapping.method == "hector"
+
+
+def test_who_is_localized_on_a_map_draws_none():
+    station = begun(localized_site())
+    assert "hector" not in station.page.now.words

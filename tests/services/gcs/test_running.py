@@ -1,10 +1,13 @@
 """The simulation's clock and the start of other missions, asked for on the page."""
 
+import json
+
 import pytest
 
 from schemas import topics
 from schemas.messages import Clock, ClockRequest, LaunchRequest, Reply
 from services.gcs.actions import LaunchMission, OpenTab, RunClock, SetRate
+from services.gcs.page.words import action_in
 from tests.services.gcs.fakes import ME, Station
 
 
@@ -73,3 +76,21 @@ def test_without_a_launcher_the_request_says_so():
     station.run(0.5)
     station.press(OpenTab(ME, "run"), LaunchMission(ME, "circuit"), LaunchMission(ME, "circuit"), seconds=0.5)
     assert "nobody answers" in station.page.now.html["run"]
+
+
+def wind(station, direction, speed):
+    station.script.bus.serve(topics.WIND.at("sys"), lambda query: answer(station, topics.WIND, query))
+    station.press(action_in(json.dumps([1, "wind", {"direction": direction, "speed": speed}]), ME), seconds=0.4)
+
+
+def test_wind_comes_from_where_it_is_said_to(station):
+    wind(station, "270", "5.5")
+    ((request,)) = station.heard
+    assert (request.velocity.x, request.velocity.y) == pytest.approx((5.5, 0.0))
+    assert "wind of 5.5 m/s from 270° – accepted" in station.page.now.html["run"]
+
+
+@pytest.mark.parametrize(("direction", "speed"), (("north", "3"), ("nan", "3"), ("10", "inf"), ("10", "")))
+def test_wind_of_no_numbers_is_refused(station, direction, speed):
+    wind(station, direction, speed)
+    assert station.heard == [] and "refused" in station.page.now.html["run"]

@@ -5,6 +5,7 @@ import pytest
 from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
 from services.gcs.actions import (
     Command,
+    FleetTable,
     Layer,
     Leave,
     Looking,
@@ -17,6 +18,7 @@ from services.gcs.actions import (
 from services.gcs.by_hand import PATIENCE
 from services.gcs.state.control import ANSWER_WITHIN
 from services.gcs.state.session import ROOTS
+from services.gcs.view.composer import SHED_AFTER
 from tests.services.gcs.fakes import ME, OPERATORS, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, with_eyes
 
@@ -198,3 +200,24 @@ def test_another_ones_leaving_does_not_stop_the_driver(station):
 def test_nobody_drives_what_he_does_not_see(station):
     station.press(Select(ME, UAV), TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0))
     assert station.script.drives == [] and Mode.MODE_MANUAL not in station.script.mode.values()
+
+
+def test_a_browser_that_falls_behind_keeps_its_picture_and_gets_its_words(station):
+    station.join_other()
+    station.press(Looking(ME), OpenTab(ME, "drive"), Looking(OTHER), OpenTab(OTHER, "drive"), seconds=1.0)
+    station.page.asleep = True
+    station.run(SHED_AFTER + 0.5)
+    before = station.page.now
+    station.run(2.0)
+    assert station.page.now.html["picture"] == before.html["picture"]
+    assert station.page.now.html["instrument"] != before.html["instrument"]
+
+
+def test_the_fleet_is_a_table_for_who_asks_for_it(station):
+    station.join_other()
+    station.press(FleetTable(ME, True), seconds=0.5)
+    table = station.page.now.html["table"]
+    assert "<caption>All vehicles</caption>" in table and all(f"<th scope='row'>{name}</th>" in table for name in (UGV, UAV))
+    assert not station.page.seen_by(OTHER).html["table"]
+    station.press(FleetTable(ME, False), seconds=0.5)
+    assert not station.page.now.html["table"]

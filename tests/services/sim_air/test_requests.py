@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.messages import NavState, RemoveRequest, SetPoseRequest, SimObject, SpawnRequest, StateRequest, SurfaceCommand
+from schemas.messages import (
+    NavState,
+    RemoveRequest,
+    SetPoseRequest,
+    SimObject,
+    SpawnRequest,
+    StateRequest,
+    SurfaceCommand,
+    Vector3,
+    WindRequest,
+)
 from services.sim_air.build import build
 from tests.services.asking import Asked
 from uvf.models.scenario import load_scenario
@@ -198,3 +208,26 @@ def test_only_so_many_states_are_kept(run):
         assert run.ask(topics.AIR_SAVE, StateRequest(name=f"s{k}"), 0.1 * (k + 1)).accepted
     assert run.ask(topics.AIR_SAVE, StateRequest(name="s3"), 1.7).accepted
     assert run.ask(topics.AIR_SAVE, StateRequest(name="more"), 1.8).reason.startswith("16 states are kept already")
+
+
+CALM_MISSION = MISSION.replace("wind: {{steady: [1.0, 2.0, 0.0], turbulence: {{severity: light}}}}\n", "")
+
+
+@pytest.mark.parametrize("mission", (MISSION, CALM_MISSION), ids=("turbulent", "calm"))
+def test_another_wind_blows_about_everybody_who_is_there_and_who_comes(tmp_path, mission):
+    run = Run(tmp_path, mission=mission)
+    assert run.ask(topics.WIND, WindRequest(velocity=Vector3(x=6.0, y=-3.0)), 0.5).accepted
+    assert run.ask(topics.AIR_SPAWN, guest(speed=23.0), 1.0).accepted
+    run.lockstep.run(3.0)
+    for name in ("", "guest"):
+        winds = np.array([array(state.wind) for state in run.of(topics.TRUTH, name)[-50:]])
+        assert winds.mean(axis=0) == pytest.approx((6.0, -3.0, 0.0), abs=2.0 if mission is MISSION else 0.01)
+    motion = run.of(topics.TRUTH)[-1]
+    through_air = array(motion.velocity) - array(motion.wind)
+    assert motion.airspeed == pytest.approx(np.linalg.norm(through_air), rel=0.05)
+    run.lockstep.close()
+
+
+def test_a_wind_that_nobody_flies_in_is_refused(run):
+    reply = run.ask(topics.WIND, WindRequest(velocity=Vector3(y=61.0)), 0.5)
+    assert not reply.accepted and "60 m/s at most" in reply.reason

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from schemas.messages import FrameTransform, Imu, LaserScan, Quaternion, Vector3, WheelTicks
+from schemas.messages import FrameTransform, Imu, LaserScan, MappingRequest, Quaternion, Vector3, WheelTicks
+from services.slam import mapping_service
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.odometry.service import OdometryService
 from tests.runtime.stepping import stepped
@@ -18,7 +19,9 @@ from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.sensors import Lidar, Mount
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, quaternion, stamp, yaw_of
 from uvf.runtime.messages.frames import FrameBuffer
-from uvf.slam.graph.method import GraphParams, GraphSlam
+from uvf.slam.graph.method import GraphSlam
+from uvf.slam.hector.method import HectorSlam
+from uvf.slam.methods import make_method, method_params
 
 BURGER = load_vehicle(Path(ROOT) / "vehicles", "burger")
 START = (2.0, 1.0, np.pi / 2)
@@ -126,18 +129,18 @@ def frames_with(poses):
 
 
 def mapping(**params):
-    return MappingService("v", LIDAR, START, MappingParams(**params), GraphSlam(GraphParams()))
+    return MappingService("v", LIDAR, START, MappingParams(**params), lambda name: make_method(name, method_params(name, {}, "test")))
 
 
-def map_for(seconds, pose_at, odometry_of):
-    """Steps a mapping service through a drive; all that it published."""
-    service = mapping()
+def map_for(seconds, pose_at, odometry_of, asked=None, service=None):
+    """Steps a mapping service through a drive; all that it published. asked: requests by the number of the step."""
+    service = service or mapping()
     said = []
     for k in range(1, round(seconds * 10) + 1):
         t = 0.1 * k
         frames = frames_with({t - s: odometry_of(pose_at(t - s)) for s in (0.2, 0.1, 0.0) if t - s > -1e-9})
         taken_at = 0.2 * (k // 2)
-        said.append((t, stepped(service, t, scan=scan_at(taken_at, pose_at(taken_at)), frames=frames)))
+        said.append((t, stepped(service, t, scan=scan_at(taken_at, pose_at(taken_at)), frames=frames, mapping=(asked or {}).get(k, []))))
     return said
 
 
@@ -244,3 +247,39 @@ def test_parameters_of_the_mapping_count_while_running():
         for k in range(1, 11):
             changed += "map" in step(k)
     assert changed >= 1
+
+
+def asked_for(action, method=""):
+    return [MappingRequest(action=action, method=method)]
+
+
+def test_a_map_that_is_held_stays_as_it_is_until_it_goes_on():
+    said = map_for(
+        8.0, straight, lambda p: (p[0] + 1.0, p[1] - 0.2, p[2]), {20: asked_for(MappingRequest.HOLD), 60: asked_for(MappingRequest.GO_ON)}
+    )
+    assert all(out["mapping"][0].accepted for _, out in said if out["mapping"])
+    held = [out for t, out in said if 2.0 < t < 5.9]
+    assert not any("map" in out or "fix" in out for out in held) and all("correction" in out for out in held)
+    assert any("fix" in out for t, out in said if t > 6.2)
+
+
+def test_another_map_is_begun_with_another_method_where_the_vehicle_is(monkeypatch):
+    made = []
+    monkeypatch.setattr(mapping_service, "warm_up", made.append)
+    service = mapping()
+    said = map_for(8.0, straight, lambda p: (p[0] + 1.0, p[1] - 0.2, p[2]), {40: asked_for(MappingRequest.BEGIN, "hector")}, service)
+    assert isinstance(service._method, HectorSlam) and service.params.method == "hector" and len(made) == 1
+    (told,) = [event for _, out in said for event in out["events"] if event.text == "another map is begun"]
+    assert told.cause == "with method hector"
+    x, y = said[-1][1]["fix"].x, said[-1][1]["fix"].y
+    assert (x, y) == pytest.approx((1.6, 0.0), abs=0.1)
+
+
+def test_a_method_that_there_is_not_is_refused_and_the_map_goes_on():
+    said = map_for(
+        3.0, straight, lambda p: (p[0] + 1.0, p[1] - 0.2, p[2]), {20: asked_for(MappingRequest.BEGIN, "gmaping"), 21: asked_for(99)}
+    )
+    replies = [out["mapping"][0] for _, out in said if out["mapping"]]
+    assert not any(reply.accepted for reply in replies)
+    assert "no SLAM method 'gmaping'" in replies[0].reason and "no action 99" in replies[1].reason
+    assert any("fix" in out for t, out in said if t > 2.2)

@@ -24,6 +24,10 @@ for (const button of document.querySelectorAll('#gcs [data-fold]')) button.addEv
   window.dispatchEvent(new Event('resize'));
 });
 
+const table = document.getElementById('gcs-table');
+const tell_table = () => say('fleet-table', table.getAttribute('aria-pressed') === 'true');
+table.addEventListener('click', () => { table.setAttribute('aria-pressed', table.getAttribute('aria-pressed') !== 'true'); tell_table(); });
+
 let operator = stored('gcs-operator');
 if (!/^[0-9a-f]{32}$/.test(operator)) {
   operator = [...crypto.getRandomValues(new Uint8Array(16))].map(byte => byte.toString(16).padStart(2, '0')).join('');
@@ -37,6 +41,7 @@ on('open', () => {
   say('hello', operator, vehicle);
   say('theme', root.dataset.theme);
   if (opened()) say('tab', opened());
+  tell_table();
   shape(true);
 });
 

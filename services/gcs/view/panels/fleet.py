@@ -8,12 +8,36 @@ from services.gcs.view.controls import does
 from services.gcs.view.markup import Html, html, joined
 from services.gcs.view.panels.progress import waypoint_text
 
-SIZE_OF_ROVER = 0.5  # m, of one whose outline nobody has measured
+COLUMNS = ("vehicle", "kind", "state", "speed", "position m", "battery", "doing", "link")
 
 
 def fleet(model: Model, chosen: VehicleModel, t: float) -> Html:
     """The cards of all vehicles at ``t`` [s, wall]."""
     return html("<div class='g-fleet'>{}</div>", joined(_card(model, v, v is chosen, t) for v in model.vehicles.values()))
+
+
+def fleet_table(model: Model, t: float) -> Html:
+    """The same as one table, for those who read or hear it as such."""
+    head = joined(html("<th scope='col'>{}</th>", name) for name in COLUMNS)
+    rows = joined(_row(v, t) for v in model.vehicles.values())
+    return html("<table class='g-facts g-table'><caption>All vehicles</caption><tr>{}</tr>{}</table>", head, rows)
+
+
+def _row(v: VehicleModel, t: float) -> Html:
+    word, style = link_of(v.heard, t)
+    badge, _ = badge_of(v)
+    numbers = dict(_numbers(v))
+    place = "–" if v.place is None else ", ".join(f"{c:.1f}" for c in v.place.position[: 3 if v.flies else 2])
+    cells = (
+        badge,
+        numbers.get("airspeed") or numbers.get("speed", "–"),
+        place,
+        numbers.get("battery", "–"),
+        numbers.get("job") or numbers.get("waypoint", "–"),
+    )
+    link = html("<td class='g-{}'>{}</td>", style, word)
+    kind = "aircraft" if v.flies else "rover"
+    return html("<tr><th scope='row'>{}</th><td>{}</td>{}{}</tr>", v.name, kind, joined(html("<td>{}</td>", cell) for cell in cells), link)
 
 
 def _card(model: Model, v: VehicleModel, is_chosen: bool, t: float) -> Html:

@@ -1,13 +1,15 @@
-"""The tab Run: the simulation's clock, and the missions that can be started."""
+"""The tab Run: the simulation's clock, the wind, and the missions that can be started."""
 
 from collections.abc import Mapping
 from functools import lru_cache
+from math import hypot
 from pathlib import Path
 
 from schemas.messages import Clock
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model
-from services.gcs.view.controls import button
+from services.gcs.state.wording import bearing_from
+from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
 from services.gcs.view.panels.progress import order_line
 from services.gcs.view.panels.status import clock_text
@@ -20,9 +22,10 @@ LONGEST = 160  # letters of what a mission is about
 def run_panel(model: Model, session: BrowserSession, t: float) -> Html:
     """The panel at ``t`` [s, wall] as one page sees it."""
     return html(
-        "<h2 class='g-h'>Simulation{}</h2>{}<h2 class='g-h'>Missions</h2>{}{}",
+        "<h2 class='g-h'>Simulation{}</h2>{}{}<h2 class='g-h'>Missions</h2>{}{}",
         html("<span>{}</span>", _state(model)),
         _clock(model, session, t),
+        _wind(model),
         order_line(model.order),
         joined(_mission(model, session, name, about, t) for name, about in missions(model.site.mission_path.parent).items()),
     )
@@ -48,6 +51,23 @@ def _clock(model: Model, session: BrowserSession, t: float) -> Html:
     rates = joined(button(f"×{rate:g}" if rate else "fastest", "rate", rate, style="", pressed=rate == wanted) for rate in RATES)
     group = html("<div class='g-pressed-group g-gap' role='group' aria-label='Rate'>{}</div>", rates)
     return html("<div class='g-row'>{}{}{}</div>{}", go, step, reset, group)
+
+
+def _wind(model: Model) -> Html:
+    """The wind about the first aircraft, and a form for another one; empty without aircraft."""
+    flying = next((v for v in model.vehicles.values() if v.flies), None)
+    if flying is None:
+        return html("")
+    now = "not known"
+    if flying.nav is not None:
+        wind = flying.nav.wind
+        now = f"{hypot(wind.x, wind.y):.1f} m/s from {bearing_from(wind):03.0f}°, as {flying.name} estimates"
+    fields = joined(
+        html("<input type='number' name='{}' min='0' max='{}' step='any' placeholder='{}' aria-label='{}' required>", *field)
+        for field in (("direction", 360, "from °", "Wind from, degrees"), ("speed", 60, "m/s", "Wind speed, metres per second"))
+    )
+    form = html("<form class='g-form' {}>{}<button type='submit' class='g-btn'>Blow</button></form>", does("wind"), fields)
+    return html("<h2 class='g-h'>Wind<span>{}</span></h2>{}", now, form)
 
 
 def _mission(model: Model, session: BrowserSession, name: str, about: str, t: float) -> Html:
