@@ -56,15 +56,15 @@ from schemas.messages import (
     VehicleStatus,
     WindRequest,
 )
-from services.gcs.commands import Commander
 from services.gcs.export import Exporter
 from services.gcs.listening import BusListening
-from services.gcs.offers import SOURCE
+from services.gcs.orders.commands import Commander
+from services.gcs.orders.offers import SOURCE
+from services.gcs.orders.time_travel import TimeTravel
 from services.gcs.state import past
 from services.gcs.state.history import RecentHistory
 from services.gcs.state.state import Model
 from services.gcs.surveying import SurveyPlanner
-from services.gcs.time_travel import TimeTravel
 from services.gcs.view.composer import Composer
 from services.gcs.view.drawing import Page
 from services.gcs.view.panels.timeline import TimeBar

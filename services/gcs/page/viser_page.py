@@ -9,7 +9,7 @@ from typing import Any
 
 import viser
 
-from services.gcs.actions import ClickGround, Join, Leave, PageAction, Select
+from services.gcs.actions.page import ClickGround, Join, Leave, PageAction, Select
 from services.gcs.page.viser_ground import light
 from services.gcs.page.viser_panel import ViserPanel
 from services.gcs.page.viser_scene import ViserScene

@@ -7,7 +7,7 @@ import numpy as np
 import viser
 from viser import _messages
 
-from services.gcs.actions import PageAction
+from services.gcs.actions.page import PageAction
 from services.gcs.page.viser_ground import dress
 from services.gcs.page.viser_scene import ViserScene
 from services.gcs.page.words import action_in

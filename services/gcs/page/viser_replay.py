@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from math import inf
 from pathlib import Path
 
-from services.gcs.actions import Beat, Dress, Hello, Join, OpenTab, PageAction
+from services.gcs.actions.page import Beat, Dress, Hello, Join, OpenTab, PageAction
 from services.gcs.export import NoExporter
 from services.gcs.page.viser_assets import STYLES, WEB
 from services.gcs.page.viser_ground import dress, light

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from services.gcs.by_hand import ManualDriving
+from services.gcs.orders.by_hand import ManualDriving
 from services.gcs.state.area_draft import Ring
 from services.gcs.state.graph_choice import GraphChoice
 from services.gcs.state.node_graph import NodeGraph

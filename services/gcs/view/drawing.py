@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from services.gcs.actions import PageAction
+from services.gcs.actions.page import PageAction
 from services.gcs.state.vehicle_model import DisplayPose
 from services.gcs.view.markup import Html
 

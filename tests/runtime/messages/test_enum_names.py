@@ -20,7 +20,7 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services import gcs
-from services.gcs.actions import OpenTab
+from services.gcs.actions.page import OpenTab
 from services.gcs.state.wording import mode_name
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV

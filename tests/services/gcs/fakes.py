@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from html import unescape
 from typing import Any
 
-from services.gcs.actions import Beat, ClickGround, Hello, Join, OpenTab, Point
+from services.gcs.actions.page import Beat, ClickGround, Hello, Join, OpenTab, Point
 from services.gcs.export import ExportState
 from services.gcs.page.words import action_in
 from services.gcs.service import GroundStation

@@ -7,9 +7,7 @@ import pytest
 import yaml
 
 from schemas.messages import FenceRequest, MissionItem, RallyRequest
-from services.gcs import area_orders
-from services.gcs.actions import ClickGround, OpenTab, Select
-from services.gcs.area_actions import (
+from services.gcs.actions.areas import (
     AreaAdd,
     AreaClear,
     AreaDrop,
@@ -24,7 +22,9 @@ from services.gcs.area_actions import (
     ZoneChoose,
     ZoneEnd,
 )
-from services.gcs.planning_actions import PlanLoad
+from services.gcs.actions.page import ClickGround, OpenTab, Select
+from services.gcs.actions.plans import PlanLoad
+from services.gcs.orders import area_orders
 from services.gcs.state.area_draft import FenceDraft, RallyDraft
 from services.gcs.state.plan_file import plan_text, read_plan
 from services.gcs.surveying import FieldSurvey, SurveyProcess

@@ -3,8 +3,8 @@
 import pytest
 
 from schemas.messages import CancelRequest, Mode, ModeRequest, NavStatus
-from services.gcs.actions import Command, Hello, Join, Leave, LeaveWheel, Rescale, Select, Steer, StopAll, TakeWheel
-from services.gcs.by_hand import PATIENCE, ManualDriving
+from services.gcs.actions.page import Command, Hello, Join, Leave, LeaveWheel, Rescale, Select, Steer, StopAll, TakeWheel
+from services.gcs.orders.by_hand import PATIENCE, ManualDriving
 from services.gcs.page.words import action_in
 from tests.services.gcs.fakes import ME, OPERATORS, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV

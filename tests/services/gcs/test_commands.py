@@ -5,8 +5,8 @@ import pytest
 
 from schemas import topics
 from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
-from services.gcs.actions import Command, Layer, Point, ReleaseStop, Select, StopAll, ground_point
-from services.gcs.orders import ANSWER_WITHIN
+from services.gcs.actions.page import Command, Layer, Point, ReleaseStop, Select, StopAll, ground_point
+from services.gcs.orders.orders import ANSWER_WITHIN
 from services.gcs.state.session import CONFIRM_WITHIN, OLD_AFTER
 from services.gcs.state.wording import describe
 from tests.services.gcs.fakes import ME, Station, click

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from services.gcs.actions import ClickGround, Command, Layer, OpenTab, Select, StopAll, TakeWheel
-from services.gcs.time_actions import ExportMinute, PlayPast, PlayRate, ShowLive, ShowMoment, ShowPast, StepEvent
+from services.gcs.actions.page import ClickGround, Command, Layer, OpenTab, Select, StopAll, TakeWheel
+from services.gcs.actions.times import ExportMinute, PlayPast, PlayRate, ShowLive, ShowMoment, ShowPast, StepEvent
 from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV
 

@@ -8,7 +8,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import MappingRequest, PlaceRequest, RelocalizeRequest, Reply, SaveMapRequest
-from services.gcs.actions import Point
+from services.gcs.actions.page import Point
 from services.gcs.page.words import action_in
 from tests.services.gcs.fakes import ME, Station, click
 from tests.services.gcs.scripted import UGV, demo_site

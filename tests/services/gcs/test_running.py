@@ -6,7 +6,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Clock, ClockRequest, LaunchRequest, Reply
-from services.gcs.actions import LaunchMission, OpenTab, RunClock, SetRate
+from services.gcs.actions.page import LaunchMission, OpenTab, RunClock, SetRate
 from services.gcs.page.words import action_in
 from tests.services.gcs.fakes import ME, Station
 

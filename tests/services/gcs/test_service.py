@@ -4,7 +4,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import ArmRequest, Mode
-from services.gcs.actions import Command, OpenTab, Select, StopAll
+from services.gcs.actions.page import Command, OpenTab, Select, StopAll
 from services.gcs.service import GroundStation
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, with_leader

@@ -3,7 +3,7 @@
 import pytest
 
 from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
-from services.gcs.actions import (
+from services.gcs.actions.page import (
     Command,
     FleetTable,
     Layer,
@@ -15,7 +15,7 @@ from services.gcs.actions import (
     Steer,
     TakeWheel,
 )
-from services.gcs.by_hand import PATIENCE
+from services.gcs.orders.by_hand import PATIENCE
 from services.gcs.state.control import ANSWER_WITHIN
 from services.gcs.state.session import ROOTS
 from services.gcs.view.composer import SHED_AFTER

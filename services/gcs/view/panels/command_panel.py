@@ -1,6 +1,6 @@
 """The commands of the vehicle on show, what became of the last one, and how far its job is."""
 
-from services.gcs.offers import Offer, offers
+from services.gcs.orders.offers import Offer, offers
 from services.gcs.state.control import called
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model

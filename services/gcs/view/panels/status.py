@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from schemas.messages import Clock, Event, NavStatus, Process, StopEngagement
-from services.gcs.offers import SOURCE
+from services.gcs.orders.offers import SOURCE
 from services.gcs.state.control import called
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model

@@ -1,7 +1,7 @@
 """The panel for driving a ground vehicle by hand. Its buttons are also the page's table of keys: ``data-keys`` are those that press one."""
 
 from schemas.messages import Mode
-from services.gcs.by_hand import ManualDriving
+from services.gcs.orders.by_hand import ManualDriving
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.state.wording import mode_name
 from services.gcs.view.controls import button

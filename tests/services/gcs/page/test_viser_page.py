@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import websockets
 
-from services.gcs.actions import Join, Leave, Select, Shape, StopAll, TakeWheel
+from services.gcs.actions.page import Join, Leave, Select, Shape, StopAll, TakeWheel
 from services.gcs.page.viser_page import ViserPage
 from services.gcs.page.words import action_in
 from services.gcs.state.vehicle_model import DisplayPose

@@ -7,7 +7,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import GimbalCommand, JointState, JointStates
-from services.gcs.actions import AimGimbal, GimbalMode, Looking, OpenTab, Select, ShowCamera
+from services.gcs.actions.page import AimGimbal, GimbalMode, Looking, OpenTab, Select, ShowCamera
 from services.gcs.page.words import action_in
 from services.gcs.view.panels.camera_panel import SEEN_FOR
 from tests.services.gcs.fakes import ME, Station

@@ -7,7 +7,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import LaserScan, PoseInFrame, Vector3
-from services.gcs.actions import FilterTopics, Join, Leave, OpenTab, ScopeTopics, ShowService, ShowTopic
+from services.gcs.actions.page import FilterTopics, Join, Leave, OpenTab, ScopeTopics, ShowService, ShowTopic
 from services.gcs.page.words import action_in
 from services.gcs.state.graph_choice import GraphChoice
 from services.gcs.state.node_graph import NodeGraph, ServiceState, TopicState

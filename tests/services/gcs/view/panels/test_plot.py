@@ -7,8 +7,8 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Event
-from services.gcs.actions import OpenTab, Select
-from services.gcs.plot_actions import PlotAdd, PlotHold, PlotPreset, PlotRemove, PlotTopic, PlotWindow
+from services.gcs.actions.page import OpenTab, Select
+from services.gcs.actions.plots import PlotAdd, PlotHold, PlotPreset, PlotRemove, PlotTopic, PlotWindow
 from services.gcs.state.plot_choice import MOST_SERIES
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV

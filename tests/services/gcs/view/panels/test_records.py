@@ -6,7 +6,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Event, Health, Process, Processes, Refusal
-from services.gcs.actions import OpenTab
+from services.gcs.actions.page import OpenTab
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV
 

@@ -4,7 +4,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Clock, Event, ExternalVehicle, NavStatus, Process, Processes, StopCommand, Timestamp, VehicleStatus
-from services.gcs.actions import OpenTab, ReleaseStop, StopAll
+from services.gcs.actions.page import OpenTab, ReleaseStop, StopAll
 from services.gcs.view.panels.status import ALERT_LENGTH, ALERTS_SHOWN, alerts
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV

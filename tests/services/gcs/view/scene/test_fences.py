@@ -8,7 +8,7 @@ import pytest
 from schemas import topics
 from schemas.limits import LENGTHS
 from schemas.messages import Fence, FenceZone, Vector3
-from services.gcs.actions import Layer
+from services.gcs.actions.page import Layer
 from services.gcs.view.drawing import MeshNode, Polyline
 from services.gcs.view.scene import way_layers
 from services.gcs.view.scene.fences import CORNERS, KEEP_OUT, fence_nodes

@@ -18,7 +18,7 @@ from schemas.messages import (
     Quaternion,
     Vector3,
 )
-from services.gcs.actions import Layer
+from services.gcs.actions.page import Layer
 from services.gcs.state.session import ROOTS, SHOWN_AT_FIRST
 from services.gcs.view.drawing import Axes, Boxes, FloorPicture, Polyline
 from services.gcs.view.scene.estimates import covariance_of, ellipse

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from schemas.messages import Clock, FrameTransform, Quaternion, Vector3
-from services.gcs.actions import Layer
+from services.gcs.actions.page import Layer
 from services.gcs.state.state import Model
 from services.gcs.view.drawing import FloorPicture, MeshNode, Points, Polyline, TextNode
 from services.gcs.view.scene.map_layers import floor_picture

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from services.gcs.plot_actions import OfPlot, PlotAdd, PlotHold, PlotPreset, PlotRemove, PlotTopic, PlotWindow
+from services.gcs.actions.plots import OfPlot, PlotAdd, PlotHold, PlotPreset, PlotRemove, PlotTopic, PlotWindow
 from services.gcs.state.plot_choice import WINDOWS, PlotChoice, presets_of
 from services.gcs.state.plot_series import SeriesName
 from services.gcs.state.session import BrowserSession

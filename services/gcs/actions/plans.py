@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from services.gcs.actions import Metres, Name, PageAction
+from services.gcs.actions.page import Metres, Name, PageAction
 
 FILE_MOST = 48_000  # characters of a plan file
 Index = Annotated[int, msgspec.Meta(ge=0, le=1000)]

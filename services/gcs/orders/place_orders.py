@@ -3,11 +3,11 @@
 import numpy as np
 
 from schemas.messages import GoalRequest, HomeCommand, Mode, ModeRequest, PreviewRequest, Vector3, VehicleCommandRequest
-from services.gcs.by_hand import ManualDriving
-from services.gcs.map_orders import MapOrders
-from services.gcs.offers import SOURCE, STOPPED
-from services.gcs.orders import OrderBook
-from services.gcs.outbox import Outbox
+from services.gcs.orders.by_hand import ManualDriving
+from services.gcs.orders.map_orders import MapOrders
+from services.gcs.orders.offers import SOURCE, STOPPED
+from services.gcs.orders.orders import OrderBook
+from services.gcs.orders.outbox import Outbox
 from services.gcs.state.pointing import TOOLS, Pointed
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model

@@ -5,10 +5,10 @@ from math import cos, isfinite, radians, sin
 from google.protobuf.message import Message
 
 from schemas.messages import ClockRequest, LaunchRequest, Vector3, WindRequest
-from services.gcs.actions import LaunchMission, RunClock, SetRate, SetWind, WindForm
-from services.gcs.offers import SOURCE
-from services.gcs.orders import OrderBook
-from services.gcs.outbox import Outbox
+from services.gcs.actions.page import LaunchMission, RunClock, SetRate, SetWind, WindForm
+from services.gcs.orders.offers import SOURCE
+from services.gcs.orders.orders import OrderBook
+from services.gcs.orders.outbox import Outbox
 from services.gcs.state.session import BrowserSession
 
 CLOCK_ACTIONS = {

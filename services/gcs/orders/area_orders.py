@@ -5,7 +5,7 @@ from typing import Any
 from google.protobuf.message import Message
 
 from schemas.messages import FenceRequest, RallyRequest
-from services.gcs.area_actions import (
+from services.gcs.actions.areas import (
     AreaAdd,
     AreaClear,
     AreaDrop,
@@ -20,9 +20,9 @@ from services.gcs.area_actions import (
     ZoneChoose,
     ZoneEnd,
 )
-from services.gcs.offers import SOURCE
-from services.gcs.orders import OrderBook
-from services.gcs.outbox import Outbox
+from services.gcs.orders.offers import SOURCE
+from services.gcs.orders.orders import OrderBook
+from services.gcs.orders.outbox import Outbox
 from services.gcs.state.area_draft import AreaDraft, FenceDraft, SurveyDraft
 from services.gcs.state.plan_draft import MOST_ITEMS
 from services.gcs.state.session import BrowserSession

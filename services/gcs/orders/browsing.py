@@ -4,7 +4,8 @@ from dataclasses import replace
 from typing import Any
 
 from schemas.messages import PreviewReply
-from services.gcs.actions import (
+from services.gcs.actions.areas import PlanPart
+from services.gcs.actions.page import (
     Beat,
     ChooseView,
     Dress,
@@ -24,10 +25,9 @@ from services.gcs.actions import (
     ShowService,
     ShowTopic,
 )
-from services.gcs.area_actions import PlanPart
-from services.gcs.by_hand import ManualDriving
-from services.gcs.plot_actions import OfPlot
-from services.gcs.plotting import plot
+from services.gcs.actions.plots import OfPlot
+from services.gcs.orders.by_hand import ManualDriving
+from services.gcs.orders.plotting import plot
 from services.gcs.state.area_draft import PARTS
 from services.gcs.state.graph_choice import GraphChoice
 from services.gcs.state.session import ROOTS, VIEWS, BrowserSession

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import msgspec
 
-from services.gcs.actions import Name, PageAction
+from services.gcs.actions.page import Name, PageAction
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,7 @@
 """The missions that are drawn on the page: edited, flown ahead of time, and put into force."""
 
 from schemas.messages import Mission, MissionItem, MissionRequest, SetCurrentRequest, Vector3
-from services.gcs.offers import SOURCE
-from services.gcs.planning_actions import (
+from services.gcs.actions.plans import (
     FILE_MOST,
     OfPlan,
     PlanAdd,
@@ -15,6 +14,7 @@ from services.gcs.planning_actions import (
     PlanShift,
     PlanTake,
 )
+from services.gcs.orders.offers import SOURCE
 from services.gcs.state.plan_draft import PLACED, PlanDraft
 from services.gcs.state.plan_file import read_plan, take_areas
 from services.gcs.state.plan_outlook import PlanOutlook, outlook_of

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from services.gcs.actions import PageAction
+from services.gcs.actions.page import PageAction
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from services.gcs.actions import Metres, Name, PageAction
-from services.gcs.planning_actions import Index
+from services.gcs.actions.page import Metres, Name, PageAction
+from services.gcs.actions.plans import Index
 
 Part = Literal["fence", "rally", "survey"]
 

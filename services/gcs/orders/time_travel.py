@@ -2,13 +2,13 @@
 
 from math import isfinite
 
+from services.gcs.actions.times import ExportMinute, OfTime, PlayPast, PlayRate, ShowLive, ShowMoment, ShowPast, StepEvent
 from services.gcs.export import Exporter
 from services.gcs.state.history import RecentHistory
 from services.gcs.state.past import PastModel
 from services.gcs.state.past_choice import RATES, PastChoice
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model
-from services.gcs.time_actions import ExportMinute, OfTime, PlayPast, PlayRate, ShowLive, ShowMoment, ShowPast, StepEvent
 
 NEAR = 0.5  # s: nearer to the present, or to an event, is the same
 HALF = 30.0  # s

@@ -1,8 +1,8 @@
 """Control of a vehicle goes from one operator to another."""
 
 from schemas.messages import Event
-from services.gcs.actions import AnswerControl, RequestControl
-from services.gcs.by_hand import ManualDriving
+from services.gcs.actions.page import AnswerControl, RequestControl
+from services.gcs.orders.by_hand import ManualDriving
 from services.gcs.state.control import called
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model

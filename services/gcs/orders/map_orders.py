@@ -5,10 +5,10 @@ import re
 from google.protobuf.message import Message
 
 from schemas.messages import MappingRequest, PlaceRequest, RelocalizeRequest, SaveMapRequest
-from services.gcs.map_actions import BeginMap, Mapping, OfMap, Relocalize, SaveMap
-from services.gcs.offers import SOURCE
-from services.gcs.orders import OrderBook
-from services.gcs.outbox import Outbox
+from services.gcs.actions.maps import BeginMap, Mapping, OfMap, Relocalize, SaveMap
+from services.gcs.orders.offers import SOURCE
+from services.gcs.orders.orders import OrderBook
+from services.gcs.orders.outbox import Outbox
 from services.gcs.state.pointing import Pointed
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.vehicle_model import VehicleModel

@@ -20,7 +20,9 @@ from schemas.messages import (
     PreviewRequest,
     WindRequest,
 )
-from services.gcs.actions import (
+from services.gcs.actions.areas import OfArea
+from services.gcs.actions.maps import OfMap
+from services.gcs.actions.page import (
     AimGimbal,
     AnswerControl,
     ClickGround,
@@ -41,27 +43,25 @@ from services.gcs.actions import (
     TakeWheel,
     ground_point,
 )
-from services.gcs.area_actions import OfArea
-from services.gcs.area_orders import AreaOrders
-from services.gcs.browsing import Browsing
-from services.gcs.by_hand import ManualDriving
-from services.gcs.handover import ControlHandover
-from services.gcs.map_actions import OfMap
-from services.gcs.map_orders import MapOrders
-from services.gcs.offers import SOURCE, offer_of
-from services.gcs.orders import OrderBook
-from services.gcs.outbox import Outbox
-from services.gcs.place_orders import PlaceOrders
-from services.gcs.planning import Planning
-from services.gcs.planning_actions import OfPlan, PlanGoTo, PlanUpload
-from services.gcs.run_orders import RunOrders
+from services.gcs.actions.plans import OfPlan, PlanGoTo, PlanUpload
+from services.gcs.actions.times import OfTime
+from services.gcs.orders.area_orders import AreaOrders
+from services.gcs.orders.browsing import Browsing
+from services.gcs.orders.by_hand import ManualDriving
+from services.gcs.orders.handover import ControlHandover
+from services.gcs.orders.map_orders import MapOrders
+from services.gcs.orders.offers import SOURCE, offer_of
+from services.gcs.orders.orders import OrderBook
+from services.gcs.orders.outbox import Outbox
+from services.gcs.orders.place_orders import PlaceOrders
+from services.gcs.orders.planning import Planning
+from services.gcs.orders.run_orders import RunOrders
+from services.gcs.orders.time_travel import TimeTravel
 from services.gcs.state.control import called
 from services.gcs.state.session import OLD_AFTER, BrowserSession
 from services.gcs.state.state import Model
 from services.gcs.state.wording import GIMBAL_MODES, describe
 from services.gcs.surveying import SurveyPlanner
-from services.gcs.time_actions import OfTime
-from services.gcs.time_travel import TimeTravel
 from uvf.control.teleop_drive import SCALINGS, TeleopCommand
 from uvf.runtime.contract.service import Answer
 from uvf.runtime.messages.convert import stamp
