@@ -165,7 +165,7 @@ def test_seeded_nonsense_stops_and_moves_nothing(station, good):
         pack(update("x", removed=True)),
         pack(update("x", value=True, update_cb=[])),
         pack(update("x", value=float("inf"))),
-        pack(update("x", value="y" * 5000)),
+        pack(update("x", value="y" * 60_000)),
         pack(click(event_type="rect-select")),
         pack(click(ray_origin=None)),
         pack({"type": "FileTransferStartUpload", "uuid": "x"}),
@@ -175,7 +175,7 @@ def test_what_no_page_says_is_not_handed_on(raw):
     assert not is_sound(raw)
 
 
-@pytest.mark.parametrize("message", [CAMERA, click(), update("x", value=True), update("x", value=0.5), update("x", value="Top")])
+@pytest.mark.parametrize("message", [CAMERA, click(), update("x", value=True), update("x", value=0.5), update("x", value="p" * 50_000)])
 def test_what_a_page_says_is_handed_on(message):
     assert is_sound(pack(message))
 

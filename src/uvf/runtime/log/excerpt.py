@@ -4,14 +4,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from mcap.records import Attachment, McapRecord
-
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.log.bounds import Standing
 from uvf.runtime.log.reading import opened_log
 from uvf.runtime.log.recording import Recorder, stands
-from uvf.runtime.log.recovery import in_chunks, recorded_samples, whole_records
+from uvf.runtime.log.recovery import recorded_so_far
 
 
 class Span(NamedTuple):
@@ -63,12 +61,4 @@ def _read(logs: Iterable[Path], attached: dict[str, bytes]) -> Iterator[tuple[Sa
     """Messages as they were recorded, and when [ns]; what is attached goes to ``attached`` before the first message."""
     for path in logs:
         with opened_log(path) as file:
-            records = in_chunks(_noting(whole_records(file), attached), [])
-            yield from recorded_samples(records)
-
-
-def _noting(records: Iterable[McapRecord], attached: dict[str, bytes]) -> Iterator[McapRecord]:
-    for record in records:
-        if isinstance(record, Attachment):
-            attached[record.name] = record.data
-        yield record
+            yield from recorded_so_far(file, attached)

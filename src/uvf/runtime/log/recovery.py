@@ -28,10 +28,10 @@ def recover(source: Path, target: Path, tell: Callable[[str], None] = lambda lin
         raise BadInput(f"log {target}: is the log that is to be saved; name another file")
     damaged: list[Chunk] = []
     with opened_log(source) as file:
-        outside = [r for r in whole_records(file) if isinstance(r, (Attachment, Schema, Channel))]
+        outside = [r for r in _whole_records(file) if isinstance(r, (Attachment, Schema, Channel))]
         # What a damaged chunk has defined stands at the end of a log once more.
         defined = (r for r in outside if not isinstance(r, Attachment))
-        samples = (sample for sample, _ in recorded_samples(itertools.chain(defined, in_chunks(whole_records(file), damaged))))
+        samples = (sample for sample, _ in _recorded_samples(itertools.chain(defined, _in_chunks(_whole_records(file), damaged))))
         first = next(samples, None)
         if first is None:
             raise BadInput(f"log {source}: holds no whole message that could be saved")
@@ -52,7 +52,7 @@ def _recorded(target: Path, attached: dict[str, bytes], samples: Iterable[Sample
     return out.written
 
 
-def whole_records(file: IO[bytes]) -> Iterator[McapRecord]:
+def _whole_records(file: IO[bytes]) -> Iterator[McapRecord]:
     """From the beginning of the file, as they are read, chunks as they are; behind nonsense it goes on at the next chunk of the index."""
     size = file.seek(0, io.SEEK_END)
     index = _chunk_offsets(file)
@@ -75,7 +75,7 @@ def _chunk_offsets(file: IO[bytes]) -> list[int]:
     return []
 
 
-def in_chunks(records: Iterable[McapRecord], damaged: list[Chunk]) -> Iterator[McapRecord]:
+def _in_chunks(records: Iterable[McapRecord], damaged: list[Chunk]) -> Iterator[McapRecord]:
     """What the chunks hold; of those whose bytes are no longer what was written, nothing."""
     for record in records:
         if not isinstance(record, Chunk):
@@ -90,7 +90,22 @@ def in_chunks(records: Iterable[McapRecord], damaged: list[Chunk]) -> Iterator[M
         yield from inside
 
 
-def recorded_samples(records: Iterable[McapRecord]) -> Iterator[tuple[Sample, int]]:
+def recorded_so_far(file: IO[bytes], attached: dict[str, bytes]) -> Iterator[tuple[Sample, int]]:
+    """Whole messages of a log, which may still be being written, in the order of the file, and when each was recorded [ns since 1970].
+
+    What is attached goes into ``attached`` as it is come by: before the first message.
+    """
+    yield from _recorded_samples(_in_chunks(_noting(_whole_records(file), attached), []))
+
+
+def _noting(records: Iterable[McapRecord], attached: dict[str, bytes]) -> Iterator[McapRecord]:
+    for record in records:
+        if isinstance(record, Attachment):
+            attached[record.name] = record.data
+        yield record
+
+
+def _recorded_samples(records: Iterable[McapRecord]) -> Iterator[tuple[Sample, int]]:
     """Messages in the order of the file, and when each was recorded [ns since 1970]."""
     schemas: dict[int, Schema] = {}
     channels: dict[int, Channel] = {}
