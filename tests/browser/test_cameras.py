@@ -46,7 +46,7 @@ def test_the_picture_comes_while_it_is_seen_and_costs_nothing_behind_another_tab
 
 
 def test_a_slider_steers_the_gimbal_of_the_chosen_aircraft(looking, station):
-    pan, tilt = looking.get_by_role("slider").nth(0), looking.get_by_role("slider").nth(1)
+    pan, tilt = (looking.get_by_role("slider", name=f"{axis} of milvus") for axis in ("pan", "tilt"))
     for slider, key in ((pan, "ArrowRight"), (tilt, "ArrowRight"), (tilt, "ArrowRight")):
         slider.focus()
         slider.press(key)

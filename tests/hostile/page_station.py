@@ -6,9 +6,11 @@ Each line of its output says what it has sent so far: STOPs, requests, drives, a
 import sys
 import time
 
+from services.gcs.export import NoExporter
 from services.gcs.page import viser_socket
 from services.gcs.page.viser_page import ViserPage
 from services.gcs.service import GroundStation
+from services.gcs.surveying import SurveyProcess
 from services.gcs.view.scene.cameras import cameras
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
 from tests.services.gcs.watches import FakeWatch
@@ -22,8 +24,10 @@ SILENT_FOR = 3.0  # s, instead of ten that a test would wait for
 def main(port: int) -> None:
     viser_socket.SILENT_FOR = SILENT_FOR
     site, script = with_eyes(demo_site()), Script()
-    page = ViserPage(Address(port=port), next(iter(cameras(site).values())))
-    shell = ServiceRunner(ServiceInstance(GroundStation, lambda: GroundStation(site, page, FakeWatch())), script.bus)
+    page = ViserPage(Address(port=port), next(iter(cameras(site).values())), {})
+    shell = ServiceRunner(
+        ServiceInstance(GroundStation, lambda: GroundStation(site, page, FakeWatch(), NoExporter(), SurveyProcess())), script.bus
+    )
     begin, told = time.monotonic(), None
     while True:
         script.publish(time.monotonic() - begin)
