@@ -1,4 +1,4 @@
-"""Which vehicles serve maps, and from which files: what the mission says under ``maps:``."""
+"""What each ground vehicle's map server serves, and from which files: what the mission says under ``maps:``."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,14 +16,15 @@ from uvf.slam.maps.masks import KeepOut, SpeedLimit
 
 
 def map_servers(site: Scenario) -> list[ServiceInstance]:
-    """One map server for each ground vehicle with ``maps:``. Raises BadInput for a file that is no map, or maps for an aircraft."""
+    """One map server for each ground vehicle; without ``maps:`` it has no layers, but saves the map that the vehicle draws.
+
+    Raises BadInput for a file that is no map, or maps for an aircraft.
+    """
     place = FileLocation(str(site.mission_path)).at("vehicles")
     for member in site.of_kind("fixed_wing"):
         if member.entry.maps is not None:
             raise BadInput(f"{place.at(member.name, 'maps')}: an aircraft does not drive by maps; leave it out")
-    return [
-        _host(member, member.entry.maps, site.mission_path.parent) for member in site.of_kind("ground") if member.entry.maps is not None
-    ]
+    return [_host(member, member.entry.maps or Maps(), site.mission_path.parent) for member in site.of_kind("ground")]
 
 
 def _host(member: MissionVehicle, maps: Maps, folder: Path) -> ServiceInstance:

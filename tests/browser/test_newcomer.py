@@ -8,7 +8,8 @@ from schemas.messages import Mode
 from tests.browser.canvas import on_screen, until
 from tests.browser.conftest import opened
 from tests.distributed.system import System
-from uvf.runtime.messages.convert import array
+from uvf.models.world.map_file import load_map
+from uvf.runtime.messages.convert import array, occupancy_cells
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -106,3 +107,23 @@ def test_two_robots_are_driven_one_after_the_other(before):
         assert until(somebody.page, lambda t=turned: t() > 0.2, 30.0), f"{name} does not turn"
         somebody.page.keyboard.up("a")
         assert until(somebody.page, lambda t=turned: t() < 0.05, 15.0), f"{name} turns on"
+
+
+@pytest.mark.parametrize("before", [("demo", "/vehicles/burger/0", "0.5")], indirect=True)
+def test_another_map_is_begun_and_saved_by_name(before):
+    """What is begun anew knows less of the floor at first; what is saved is a map that can be named in a mission."""
+    system, somebody = before
+    somebody.press("Select burger")
+    somebody.press("Drive", role="tab")
+    known = lambda: np.count_nonzero(occupancy_cells(system.client.read("burger", topics.MAP)) >= 0)  # noqa: E731
+    assert until(somebody.page, lambda: known() > 2000, 60.0)
+    before_that = known()
+    somebody.press("hector")
+    somebody.press("Confirm: hector")
+    assert somebody.sees("begin another map with hector – accepted")
+    assert until(somebody.page, lambda: known() < before_that, 30.0)
+    somebody.page.get_by_label("Name of the map").fill("my-house")
+    somebody.press("Save map")
+    assert somebody.sees("save the map as my-house – accepted")
+    saved = load_map(system.maps / "my-house.yaml")
+    assert np.count_nonzero(saved.cells == 100) > 50

@@ -23,6 +23,7 @@ class System:
     def __init__(self, runs, *arguments, page=False, mission="demo", programs=()):
         """programs: ports to which MAVLink is sent, besides ``mavlink``."""
         self.router, self.page, self.mavlink = (free_port() for _ in range(3))
+        self.maps = runs / "state" / "maps"
         self.endpoint = f"tcp/127.0.0.1:{self.router}"
         self.environment = {
             **os.environ,

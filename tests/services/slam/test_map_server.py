@@ -118,8 +118,12 @@ def test_maps_that_are_not_there_are_told_with_the_nearest(tmp_path, monkeypatch
         map_servers(mission(tmp_path, milvus="    maps: {}\n"))
 
 
-def test_without_maps_nobody_serves(tmp_path):
-    assert map_servers(mission(tmp_path)) == []
+def test_without_maps_the_drawn_map_is_saved_all_the_same(tmp_path, monkeypatch):
+    monkeypatch.setenv("UVF_STATE", str(tmp_path / "state"))
+    (host,) = map_servers(mission(tmp_path))
+    assert stepped(host.make(), 0.0) == {}
+    asked(host.make(), save=[SaveMapRequest(name="mine")])
+    assert find_map("mine").cells.size
 
 
 def test_a_grid_that_is_no_map_is_told():

@@ -86,7 +86,7 @@ class JobFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Maps(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Maps of map_server, world frame: files (relative to the mission file's folder), or names of saved ones. An empty one serves too.
+    """Maps of map_server, world frame: files (relative to the mission file's folder), or names of saved ones.
 
     speed: a mask whose values v, 1..100, allow speed_base + speed_multiplier * v.
     known: may be a session of a mapping (.npz), too. known_at: x, y [m], yaw [rad] of the frame of its file in the world.
