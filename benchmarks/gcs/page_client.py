@@ -1,0 +1,101 @@
+"""A browser's side of the page without the browser: reads what the ground station sends, and says what the page's script says."""
+
+import asyncio
+import json
+import re
+import secrets
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import msgspec
+import viser
+import websockets
+import zstandard
+
+from benchmarks.gcs.feeder import Circle
+
+CAMERA = {
+    "type": "ViewerCameraMessage",
+    "wxyz": (1.0, 0.0, 0.0, 0.0),
+    "position": (0.0, 0.0, 300.0),
+    "image_height": 900,
+    "image_width": 900,
+    "fov": 1.0,
+    "near": 0.01,
+    "far": 20000.0,
+    "look_at": (0.0, 0.0, 0.0),
+    "up_direction": (0.0, 0.0, 1.0),
+}
+BEAT = re.compile(r"data-beat='([0-9.]+)'")
+BRIDGE = re.compile(r"data-bridge='([^']+)'")
+
+
+@dataclass
+class PageClient:
+    """One page. vehicle: the one on show; pause: s that it takes over each batch, as a slow one does.
+
+    ages: how old [s] each position was on arrival; received: bytes; pictures: of the camera.
+    """
+
+    port: int
+    circles: Mapping[str, Circle]
+    vehicle: str
+    pause: float = 0.0
+    ages: list[float] = field(default_factory=list)
+    received: int = 0
+    pictures: int = 0
+    joined: float = 0.0
+    _count: int = 0
+    _bridge: str = ""
+    _beat: str = ""
+
+    async def look(self, seconds: float) -> None:
+        """Joins, and looks for so long."""
+        began, looked = time.monotonic(), 0.0
+        url, protocol = f"ws://127.0.0.1:{self.port}", f"viser-v{viser.__version__}"
+        async with websockets.connect(url, subprotocols=[websockets.Subprotocol(protocol)], max_size=None) as socket:
+            await socket.send(msgspec.msgpack.encode(CAMERA))
+            while (now := time.monotonic()) - began < seconds:
+                batch = await socket.recv()
+                assert isinstance(batch, bytes)
+                self.received += len(batch)
+                for message in _decoded(batch):
+                    await self._take(socket, message)
+                    self.joined = self.joined or (time.monotonic() - began if message["type"] == "ReplayDoneMessage" else 0.0)
+                if self._bridge and now - looked > 1.0:
+                    looked = now
+                    await self._say(socket, "looks")
+                if self.pause:
+                    await asyncio.sleep(self.pause)
+
+    async def _take(self, socket: websockets.ClientConnection, message: Mapping[str, Any]) -> None:
+        kind = message["type"]
+        if kind == "SetPositionMessage":
+            circle = self.circles.get(message["name"].rpartition("/")[2])
+            if circle is not None:
+                self.ages.append(circle.age(*message["position"][:2], time.time()))
+            return
+        content = str(message.get("props", message.get("updates", {})).get("content", "")) if kind.startswith("Gui") else ""
+        self.pictures += "data:image/jpeg" in content
+        beat, bridge = BEAT.search(content), BRIDGE.search(content)
+        if bridge and not self._bridge:
+            self._bridge = bridge[1]
+            await self._say(socket, "hello", secrets.token_hex(16), self.vehicle)
+            await self._say(socket, "tab", "Fly")
+        if beat and beat[1] != self._beat:
+            self._beat = beat[1]
+            await self._say(socket, "beat", self._beat)
+
+    async def _say(self, socket: websockets.ClientConnection, *word: str) -> None:
+        self._count += 1
+        said = {"type": "GuiUpdateMessage", "uuid": self._bridge, "updates": {"value": json.dumps([self._count, *word])}}
+        await socket.send(msgspec.msgpack.encode(said))
+
+
+def _decoded(batch: bytes) -> list[dict[str, Any]]:
+    size, packed = int.from_bytes(batch[:8], "little"), int.from_bytes(batch[8:16], "little")
+    plain = zstandard.ZstdDecompressor().decompress(batch[16 : 16 + packed], max_output_size=size)
+    found: list[dict[str, Any]] = msgspec.msgpack.decode(plain)["messages"]
+    return found
