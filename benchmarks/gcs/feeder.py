@@ -61,7 +61,7 @@ class Circle:
         return float((wall - a * PERIOD / tau + PERIOD / 2) % PERIOD - PERIOD / 2)
 
 
-ROVERS = {f"rover{n}": Circle(40.0 * n, 0.0, 0.0, 4.0) for n in range(7)}
+ROVERS = {f"rover{n}": Circle(5.0 + 5.0 * n, 15.0, 0.0, 2.0) for n in range(7)}
 AIRCRAFT = {f"aircraft{n}": Circle(0.0, 400.0 * n, 80.0, 150.0) for n in range(3)}
 
 
@@ -82,7 +82,7 @@ class Feeder:
     def __init__(self, bus: ZenohBus) -> None:
         self._bus = bus
         self._publishers: dict[str, Publisher] = {}
-        self._picture = _picture()
+        self._pictures = [_picture(n) for n in range(8)]
         self._map = np.full((CELLS, CELLS), -1, dtype=np.int8)
 
     def step(self, number: int, t: float, wall: float) -> None:
@@ -105,7 +105,7 @@ class Feeder:
         yield topics.POSE, PoseInFrame(timestamp=stamp(t), frame_id="world", pose=pose)
         yield topics.ODOMETRY, Odometry(timestamp=stamp(t), linear_velocity=Vector3(x=0.4), angular_velocity=Vector3(z=0.1))
         yield topics.STATUS, _status(Kind.KIND_GROUND)
-        yield topics.NAV_STATUS, NavStatus(state=NavStatus.DRIVING, job="goal", goal=Vector3(x=x + 3, y=y), distance_left=3.0)
+        yield topics.NAV_STATUS, NavStatus(state=NavStatus.DRIVING, job="goal", goal=Vector3(x=20.0, y=25.0), distance_left=8.0)
         if number % EVERY_SCAN == 0:
             angles = np.linspace(0.0, tau, 360, endpoint=False)
             ranges = 2.0 + 0.5 * np.sin(3 * angles + t)
@@ -134,17 +134,18 @@ class Feeder:
         yield topics.TRUTH, state
         yield topics.STATUS, _status(Kind.KIND_FIXED_WING)
         if number % EVERY_PICTURE == 0:
-            yield topics.VIEW.by("gimbal"), CompressedImage(timestamp=stamp(t), format="jpeg", data=self._picture)
+            picture = self._pictures[number // EVERY_PICTURE % 8]
+            yield topics.VIEW.by("gimbal"), CompressedImage(timestamp=stamp(t), format="jpeg", data=picture)
 
 
 def _status(kind: Kind) -> VehicleStatus:
     return VehicleStatus(kind=kind, mode=Mode.MODE_MISSION, armed=True, command_source="mission", battery_remaining=0.8)
 
 
-def _picture() -> bytes:
+def _picture(seed: int) -> bytes:
     """640 x 480, about as large as that of a camera."""
     y, x = np.mgrid[0:480, 0:640]
-    noise = np.random.default_rng(1).normal(0.0, 12.0, (480, 640))
+    noise = np.random.default_rng(seed).normal(0.0, 12.0, (480, 640))
     grey = np.clip(110 + 60 * np.sin(x / 40) * np.cos(y / 30) + noise, 0, 255).astype(np.uint8)
     out = io.BytesIO()
     Image.fromarray(grey).convert("RGB").save(out, "JPEG", quality=70)

@@ -113,9 +113,9 @@ def _looked_at(pauses: list[float], seconds: float) -> dict[str, float]:
         "CPU %": 100 * cpu / gone,
         "p50 ms": median(late),
         "p95 ms": quantiles(late, n=20)[-1],
-        "positions Hz": len(late) / (gone + SETTLES) / len(CIRCLES),
-        "pictures Hz": fast.pictures / (gone + SETTLES),
-        "kB/s": fast.received / (gone + SETTLES) / 1e3,
+        "positions Hz": len(late) / gone / len(CIRCLES),
+        "pictures Hz": fast.pictures / gone,
+        "kB/s": fast.received / gone / 1e3,
         "join s": fast.joined,
         "MB": memory,
     }
@@ -123,10 +123,10 @@ def _looked_at(pauses: list[float], seconds: float) -> dict[str, float]:
 
 async def _measured(station: Station, clients: list[PageClient], seconds: float) -> tuple[float, float, float]:
     """CPU seconds of the station once it has settled, its memory [MB] at the end, and the time [s] between."""
-    looks = [asyncio.create_task(client.look(SETTLES + seconds + 1.0)) for client in clients]
+    looks = [asyncio.create_task(client.look(SETTLES + seconds)) for client in clients]
     await asyncio.sleep(SETTLES)
     for client in clients:
-        client.ages.clear()
+        client.forget()
     cpu, began = station.cpu(), time.monotonic()
     await asyncio.sleep(seconds)
     found = station.cpu() - cpu, station.rss_mb(), time.monotonic() - began
@@ -147,7 +147,7 @@ async def _remembered(station: Station) -> list[float]:
     for minute in MOMENTS:
         await asyncio.sleep(60.0 * minute - (time.monotonic() - began))
         found.append(station.rss_mb())
-        client.ages.clear()
+        client.forget()
     await look
     return found
 

@@ -51,6 +51,10 @@ class PageClient:
     _bridge: str = ""
     _beat: str = ""
 
+    def forget(self) -> None:
+        """Counts anew from here."""
+        self.ages, self.received, self.pictures = [], 0, 0
+
     async def look(self, seconds: float) -> None:
         """Joins, and looks for so long."""
         began, looked = time.monotonic(), 0.0
@@ -73,7 +77,7 @@ class PageClient:
     async def _take(self, socket: websockets.ClientConnection, message: Mapping[str, Any]) -> None:
         kind = message["type"]
         if kind == "SetPositionMessage":
-            circle = self.circles.get(message["name"].rpartition("/")[2])
+            circle = self.circles.get(message["name"].removeprefix("/vehicles/"))
             if circle is not None:
                 self.ages.append(circle.age(*message["position"][:2], time.time()))
             return
@@ -83,7 +87,7 @@ class PageClient:
         if bridge and not self._bridge:
             self._bridge = bridge[1]
             await self._say(socket, "hello", secrets.token_hex(16), self.vehicle)
-            await self._say(socket, "tab", "Fly")
+            await self._say(socket, "tab", "fly")
         if beat and beat[1] != self._beat:
             self._beat = beat[1]
             await self._say(socket, "beat", self._beat)

@@ -127,6 +127,8 @@ class VehicleModel:
     outlook: PlanOutlook | None = None
     aim: GimbalCommand = field(default_factory=GimbalCommand)
     """Where its gimbal was last told from here to look."""
+    _placed: tuple[NavState | PoseInFrame, DisplayPose] | None = None
+    """The newer estimate, and the pose in it."""
 
     @property
     def flies(self) -> bool:
@@ -153,11 +155,13 @@ class VehicleModel:
     def place(self) -> DisplayPose | None:
         """Its estimated pose: the newer of its two estimates."""
         nav_at, pose_at = self.heard_at.get("nav", -1.0), self.heard_at.get("pose", -1.0)
-        if self.nav is not None and nav_at >= pose_at - STALE_AFTER:
-            return DisplayPose(array(self.nav.position), wxyz(self.nav.orientation))
-        if self.pose is not None:
-            return DisplayPose(array(self.pose.pose.position), wxyz(self.pose.pose.orientation))
-        return None
+        source = self.nav if self.nav is not None and nav_at >= pose_at - STALE_AFTER else self.pose
+        if source is None:
+            return None
+        if self._placed is None or self._placed[0] is not source:
+            pose = source.pose if isinstance(source, PoseInFrame) else source
+            self._placed = source, DisplayPose(array(pose.position), wxyz(pose.orientation))
+        return self._placed[1]
 
     @property
     def true_place(self) -> DisplayPose | None:
