@@ -85,19 +85,22 @@ class Feeder:
         self._pictures = [_picture(n) for n in range(8)]
         self._map = np.full((CELLS, CELLS), -1, dtype=np.int8)
 
-    def step(self, number: int, t: float, wall: float) -> None:
-        """Step ``number`` at ``t`` [s] of the simulation."""
-        said: list[tuple[str, topics.Topic[Any], Message]] = []
-        said += [("sys", topics.CLOCK, Clock(tick=number, t_ns=round(t * 1e9), rate=1.0, rate_wanted=1.0))]
-        for name, circle in ROVERS.items():
-            said += [(name, *one) for one in self._rover(number, t, circle.at(wall))]
-        for name, circle in AIRCRAFT.items():
-            said += [(name, *one) for one in self._aircraft(number, t, circle.at(wall), circle.z)]
-        for owner, topic, message in said:
-            key = topic.at(owner)
-            if key not in self._publishers:
-                self._publishers[key] = self._bus.publisher(key, topic.message.DESCRIPTOR.full_name, topic.qos)
-            self._publishers[key].put(message.SerializeToString(deterministic=True), round(t * 1e9))
+    def tick(self, number: int, t: float) -> None:
+        """The clock, at ``t`` [s] of the simulation."""
+        self._put("sys", topics.CLOCK, Clock(tick=number, t_ns=round(t * 1e9), rate=1.0, rate_wanted=1.0), t)
+
+    def say(self, name: str, number: int, t: float, wall: float) -> None:
+        """A vehicle's messages of its step ``number``."""
+        circle = (ROVERS | AIRCRAFT)[name]
+        at = circle.at(wall)
+        for topic, message in self._rover(number, t, at) if name in ROVERS else self._aircraft(number, t, at, circle.z):
+            self._put(name, topic, message, t)
+
+    def _put(self, owner: str, topic: topics.Topic[Any], message: Message, t: float) -> None:
+        key = topic.at(owner)
+        if key not in self._publishers:
+            self._publishers[key] = self._bus.publisher(key, topic.message.DESCRIPTOR.full_name, topic.qos)
+        self._publishers[key].put(message.SerializeToString(deterministic=True), round(t * 1e9))
 
     def _rover(self, number: int, t: float, at: tuple[float, float, float]) -> Iterator[tuple[topics.Topic[Any], Message]]:
         x, y, yaw = at
@@ -153,15 +156,18 @@ def _picture(seed: int) -> bytes:
 
 
 def feed(endpoint: str) -> None:
-    """Until it is ended."""
+    """Until it is ended: the vehicles speak in turn within each step, so that no rhythm of a listener meets all of them alike."""
+    names = [*ROVERS, *AIRCRAFT]
     with ZenohBus(endpoint) as bus:
         feeder, began = Feeder(bus), time.monotonic()
-        number = 0
+        turn = 0
         while True:
-            t = number / HZ
+            t, (number, which) = turn / (HZ * len(names)), divmod(turn, len(names))
             time.sleep(max(0.0, began + t - time.monotonic()))
-            feeder.step(number, t, time.time())
-            number += 1
+            if which == 0:
+                feeder.tick(number, t)
+            feeder.say(names[which], number, t, time.time())
+            turn += 1
 
 
 if __name__ == "__main__":

@@ -59,7 +59,7 @@ class PageClient:
         """Joins, and looks for so long."""
         began, looked = time.monotonic(), 0.0
         url, protocol = f"ws://127.0.0.1:{self.port}", f"viser-v{viser.__version__}"
-        async with websockets.connect(url, subprotocols=[websockets.Subprotocol(protocol)], max_size=None) as socket:
+        async with websockets.connect(url, subprotocols=[websockets.Subprotocol(protocol)], max_size=None, ping_interval=None) as socket:
             await socket.send(msgspec.msgpack.encode(CAMERA))
             while (now := time.monotonic()) - began < seconds:
                 batch = await socket.recv()
