@@ -58,9 +58,9 @@ from services.gcs.orders.planning import Planning
 from services.gcs.orders.run_orders import RunOrders
 from services.gcs.orders.time_travel import TimeTravel
 from services.gcs.state.control import called
-from services.gcs.state.session import OLD_AFTER, BrowserSession
+from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model
-from services.gcs.state.wording import GIMBAL_MODES, describe
+from services.gcs.state.wording import GIMBAL_MODES
 from services.gcs.surveying import SurveyPlanner
 from uvf.control.teleop_drive import SCALINGS, TeleopCommand
 from uvf.runtime.contract.service import Answer
@@ -150,13 +150,8 @@ class Commander:
         offer = offer_of(self._model, vehicle, key) if vehicle is not None else None
         if vehicle is None or offer is None:
             return
-        if offer.risky and not offer.why_not:
-            if session.behind(t) > OLD_AFTER:
-                why = f"this page shows what is {session.behind(t):.0f} s old: wait until it is live"
-                self._orders.refuse(t, vehicle, describe(offer.request), why)
-                return
-            if not session.confirm(name, key, t):
-                return
+        if offer.risky and not offer.why_not and not self._orders.is_sure(t, session, name, key, offer.request):
+            return
         session.to_confirm = None
         if self._orders.begin(t, session, name, offer.request, offer.why_not) is not None:
             if offer.name == "mode" and key != "manual":
@@ -192,11 +187,11 @@ class Commander:
             case PlanUpload():
                 why = vehicle.outlook.fault if vehicle.outlook is not None else ""
                 risky = not why and vehicle.status is not None and vehicle.status.armed and vehicle.status.mode == Mode.MODE_MISSION
-                if risky and not session.confirm(vehicle.name, "upload", t):
-                    return
-                session.to_confirm = None
                 request: Message = self._planning.upload(vehicle)
                 name = "set_mission"
+                if risky and not self._orders.is_sure(t, session, vehicle.name, "upload", request):
+                    return
+                session.to_confirm = None
             case PlanGoTo(_, _, index):
                 request, name, why = self._planning.go_to(index), "current", ""
             case _ if why := self._orders.reason_against(session, vehicle):

@@ -37,11 +37,11 @@ class MapOrders:
             case Mapping(_, _, on):
                 wanted = MappingRequest.GO_ON if on else MappingRequest.HOLD
                 key, request, why = "mapping", MappingRequest(action=wanted, source=SOURCE), ""
-            case BeginMap(_, vehicle, method):
-                if not session.confirm(vehicle, f"begin {method}", t):
+            case BeginMap(_, _, method):
+                key, request, why = "mapping", MappingRequest(action=MappingRequest.BEGIN, method=method, source=SOURCE), ""
+                if not self._orders.is_sure(t, session, action.vehicle, f"begin {method}", request):
                     return
                 session.to_confirm = None
-                key, request, why = "mapping", MappingRequest(action=MappingRequest.BEGIN, method=method, source=SOURCE), ""
             case _:
                 return
         if self._orders.begin(t, session, action.vehicle, request, why) is not None:

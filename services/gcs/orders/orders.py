@@ -6,7 +6,7 @@ from google.protobuf.message import Message
 
 from schemas.messages import Event
 from services.gcs.state.control import called
-from services.gcs.state.session import BrowserSession
+from services.gcs.state.session import OLD_AFTER, BrowserSession
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import LOST_AFTER, Order, VehicleModel
 from services.gcs.state.wording import describe
@@ -56,6 +56,17 @@ class OrderBook:
             return None
         self._takes_control(session, vehicle)
         return vehicle
+
+    def is_sure(self, t: float, session: BrowserSession, name: str, key: str, request: Message) -> bool:
+        """Whether this click at ``t`` [s, wall] is the second one for what cannot be undone; a page that shows what is old is refused.
+
+        name: of the vehicle, "" for the system.
+        """
+        if session.behind(t) > OLD_AFTER:
+            why = f"this page shows what is {session.behind(t):.0f} s old: wait until it is live"
+            self.refuse(t, self._model.vehicles.get(name), describe(request), why)
+            return False
+        return session.confirm(name, key, t)
 
     def refuse(self, t: float, vehicle: VehicleModel | None, text: str, reason: str) -> None:
         """Ends an order at ``t`` [s, wall] that is not carried out."""

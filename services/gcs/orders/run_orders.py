@@ -43,7 +43,7 @@ class RunOrders:
                 name, request = "launch", LaunchRequest(mission=mission, source=SOURCE)
         key = f"{name} {getattr(action, 'what', getattr(action, 'mission', ''))}"
         loses = isinstance(action, LaunchMission) or (isinstance(action, RunClock) and action.what == "reset")
-        if loses and not session.confirm("", key, t):
+        if loses and not self._orders.is_sure(t, session, "", key, request):
             return
         session.to_confirm = None
         self._orders.open(t, None, request)

@@ -5,7 +5,8 @@ import pytest
 
 from schemas import topics
 from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
-from services.gcs.actions.page import Command, Layer, Point, ReleaseStop, Select, StopAll, ground_point
+from services.gcs.actions.maps import BeginMap
+from services.gcs.actions.page import Command, Layer, Point, ReleaseStop, RunClock, Select, StopAll, ground_point
 from services.gcs.orders.orders import ANSWER_WITHIN
 from services.gcs.state.session import CONFIRM_WITHIN, OLD_AFTER
 from services.gcs.state.wording import describe
@@ -182,6 +183,8 @@ def test_a_page_that_shows_what_is_old_does_nothing_risky(station):
     station.press(Command(ME, UGV, "disarm"), Command(ME, UGV, "disarm"))
     assert station.script.asked == []
     assert "is 2 s old" in station.model.vehicles[UGV].order.reason
+    station.press(BeginMap(ME, UGV, "hector"), BeginMap(ME, UGV, "hector"), RunClock(ME, "reset"), RunClock(ME, "reset"))
+    assert station.script.asked == [] and "is 2 s old" in station.model.order.reason
     station.press(StopAll(ME))
     assert station.script.stops[-1].engaged
     station.press(Command(ME, UGV, "hold"))
