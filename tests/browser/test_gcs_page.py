@@ -262,6 +262,7 @@ def test_a_page_that_joins_late_sees_the_same(page, browser, station):
 def test_a_silent_station_is_told_by_the_page_itself(page, station):
     station.living = False
     page.locator("#gcs-dead", has_text="LINK LOST").wait_for(timeout=20_000)
+    assert "LIVE" not in page.locator("#gcs-bar").inner_text()
     station.living = True
     page.locator("#gcs-dead").wait_for(state="hidden", timeout=20_000)
     assert "LIVE" in page.locator("#gcs-bar").inner_text()

@@ -92,10 +92,10 @@ function enlarge() {
   }
 }
 
-// A vehicle outside of the view has a sign at the edge where it is: pressed, it brings the vehicle into view.
+// A vehicle outside of the view has a sign at the edge where it is: pressed, it brings the vehicle into view, as an alarm about it does.
 const signs = document.getElementById('gcs-signs');
-signs.addEventListener('click', event => {
-  const sign = event.target.closest('button');
+document.getElementById('gcs').addEventListener('click', event => {
+  const sign = event.target.closest('.g-sign, button.g-alarm');
   if (sign) { say('select', sign.dataset.name); say('view', 'Follow'); }
 });
 

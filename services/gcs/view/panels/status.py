@@ -32,6 +32,8 @@ class Alert(NamedTuple):
     style: str
     """Class of the line: bad or warn."""
     text: str
+    vehicle: str = ""
+    """The one that it is about, if any."""
 
 
 def clock_text(seconds: float) -> str:
@@ -80,10 +82,16 @@ def _recording(model: Model) -> Html:
 
 
 def _newest_alarm(model: Model, t: float) -> Html:
-    found = alerts(model, t)
-    if found:
-        return html("<span class='g-alarm g-{}'>{}</span>", found[0].style, found[0].text)
-    return html("<span class='g-alarm g-good g-spare'>✓ no alarm</span>")
+    """What wants attention most, or else the last grave event while it stands over the scene; pressed, it brings its vehicle into view."""
+    grave = [notice.line for notice in model.log.notices(t) if notice.line.severity >= Event.ERROR and not notice.good]
+    events = [Alert("bad", f"✖ {f'{line.vehicle}: ' if line.vehicle else ''}{line.text}", line.vehicle) for line in grave]
+    found = next(iter(alerts(model, t) + events), None)
+    if found is None:
+        return html("<span class='g-alarm g-good g-spare'>✓ no alarm</span>")
+    if found.vehicle not in model.vehicles:
+        return html("<span class='g-alarm g-{}'>{}</span>", found.style, found.text)
+    about = html("data-name='{}' title='Bring {} into view'", found.vehicle, found.vehicle)
+    return html("<button type='button' class='g-alarm g-{}' {}>{}</button>", found.style, about, found.text)
 
 
 def _control(model: Model, session: BrowserSession, chosen: VehicleModel) -> Html:
@@ -97,7 +105,7 @@ def _control(model: Model, session: BrowserSession, chosen: VehicleModel) -> Htm
 
 def alert_lines(model: Model, t: float) -> Html:
     """The states that want attention at ``t`` [s, wall], over the scene."""
-    return joined(html("<div class='g-alert g-a-{}'>{}</div>", style, text) for style, text in alerts(model, t))
+    return joined(html("<div class='g-alert g-a-{}'>{}</div>", style, text) for style, text, _ in alerts(model, t))
 
 
 def alerts(model: Model, t: float) -> list[Alert]:
@@ -117,7 +125,7 @@ def alerts(model: Model, t: float) -> list[Alert]:
     found = stop + [alert for group in (own, external, _of_processes(model)) for alert in sorted(group, key=_gravity)]
     shown, rest = found[:ALERTS_SHOWN], sorted(found[ALERTS_SHOWN:], key=_gravity)
     more = [Alert(rest[0].style, f"and {len(rest)} more")] if rest else []
-    return [Alert(style, text if len(text) <= ALERT_LENGTH else f"{text[: ALERT_LENGTH - 1]}…") for style, text in shown] + more
+    return [one if len(one.text) <= ALERT_LENGTH else one._replace(text=f"{one.text[: ALERT_LENGTH - 1]}…") for one in shown] + more
 
 
 def _gravity(alert: Alert) -> bool:
@@ -128,9 +136,9 @@ def _gravity(alert: Alert) -> bool:
 def _of_vehicle(model: Model, v: VehicleModel, t: float) -> Iterator[Alert]:
     word, style = link_of(v.heard, t)
     if style == "bad":
-        yield Alert("bad", f"✖ {v.name}: {word}")
+        yield Alert("bad", f"✖ {v.name}: {word}", v.name)
     elif v.nav_status is not None and v.nav_status.state == NavStatus.BLOCKED and not model.stopped:
-        yield Alert("warn", f"⚠ {v.name} is blocked{f': {v.nav_status.reason}' if v.nav_status.reason else ''}")
+        yield Alert("warn", f"⚠ {v.name} is blocked{f': {v.nav_status.reason}' if v.nav_status.reason else ''}", v.name)
 
 
 def _of_processes(model: Model) -> Iterator[Alert]:

@@ -34,8 +34,8 @@ def timeline(bar: TimeBar, session: BrowserSession, sim_time: float, t: float) -
     ago = t - past.t if past is not None else 0.0
     live = button("● LIVE", "live", pressed=past is None, hint="Show the present")
     steps = [
-        button("|◀", "past-event", -1, more=html(" aria-label='Event before'"), hint="Event before"),
-        button("▶|", "past-event", 1, more=html(" aria-label='Next event'"), hint="Next event"),
+        button("|◀", "past-event", -1, more=html(" aria-label='Event before'"), hint="Event before", style="g-btn g-step"),
+        button("▶|", "past-event", 1, more=html(" aria-label='Next event'"), hint="Next event", style="g-btn g-step"),
     ]
     running = past is not None and past.running
     if past is None:
@@ -76,7 +76,7 @@ def _tick(timed: TimedLine, t: float) -> Html:
 def _export(exported: ExportState) -> Html:
     """Why no minute can be kept; that one is being made; or where the last one is."""
     if exported.why_not:
-        return html("<span class='g-keep g-idle' title='{}'>cannot be kept</span>", exported.why_not)
+        return html("<span class='g-keep g-idle' title='{}'>no log to keep</span>", exported.why_not)
     if exported.making:
         return html("<span class='g-keep' role='status'>making the {} …</span>", KINDS[exported.making])
     hint = "The minute around the moment on show, as a file"
@@ -85,5 +85,8 @@ def _export(exported: ExportState) -> Html:
     ready = html("")
     if exported.path:
         ready = html("<a href='{}' download>⤓ {} ({:.1f} MB)</a>", exported.path, exported.name, exported.size / 1e6)
-    menu = html("<details class='g-keep'><summary>Keep this minute</summary><div class='g-row'>{}</div></details>", joined(keys))
+    menu = html(
+        "<details class='g-keep'><summary>Keep<span class='g-spell'> this minute</span></summary><div class='g-row'>{}</div></details>",
+        joined(keys),
+    )
     return html("{}{}{}", menu, ready, fault)

@@ -5,6 +5,7 @@ import pytest
 from schemas import topics
 from schemas.messages import Clock, Event, ExternalVehicle, NavStatus, Process, Processes, StopCommand, Timestamp, VehicleStatus
 from services.gcs.actions.page import OpenTab, ReleaseStop, StopAll
+from services.gcs.state.event_log import ALARMED_FOR
 from services.gcs.view.panels.status import ALERT_LENGTH, ALERTS_SHOWN, alerts
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
@@ -18,7 +19,7 @@ def station():
 
 
 def told(station):
-    return [text for _, text in alerts(station.model, station.t)]
+    return [text for _, text, _ in alerts(station.model, station.t)]
 
 
 def test_a_normal_run_wants_no_attention(station):
@@ -37,6 +38,17 @@ def test_a_held_clock_is_told_until_it_runs_again(station):
     station.press(OpenTab(ME, "log"), seconds=0.8)
     assert told(station) == [] and "clock held" not in station.page.now.html["alerts"]
     assert "clock held at 1.00 s" in station.page.now.html["log"]
+
+
+def test_a_grave_event_is_the_alarm_for_a_while_and_leads_to_its_vehicle(station):
+    station.run(0.3)
+    assert "no alarm" in station.page.now.html["bar"]
+    station.script.say(UAV, "<b>engine</b> fails", Event.ERROR, t=station.t)
+    station.run(0.5)
+    bar = station.page.now.html["bar"]
+    assert f"✖ {UAV}: &lt;b&gt;engine&lt;/b&gt; fails" in bar and f"data-name='{UAV}'" in bar
+    station.run(ALARMED_FOR)
+    assert "no alarm" in station.page.now.html["bar"]
 
 
 def test_the_first_start_is_not_told_as_a_fault(station):
