@@ -23,6 +23,13 @@ class PlotTopic(OfPlot):
 
 
 @dataclass(frozen=True)
+class PlotFind(OfPlot):
+    """List the numbers whose topic, name and unit hold the words of this text."""
+
+    text: Name
+
+
+@dataclass(frozen=True)
 class PlotAdd(OfPlot):
     """Plot a number."""
 

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from services.gcs.actions.plots import OfPlot, PlotAdd, PlotHold, PlotPreset, PlotRemove, PlotTopic, PlotWindow
+from services.gcs.actions.plots import OfPlot, PlotAdd, PlotFind, PlotHold, PlotPreset, PlotRemove, PlotTopic, PlotWindow
 from services.gcs.state.plot_choice import WINDOWS, PlotChoice, presets_of
 from services.gcs.state.plot_series import SeriesName
 from services.gcs.state.session import BrowserSession
@@ -16,6 +16,8 @@ def plot(model: Model, session: BrowserSession, action: OfPlot) -> None:
     match action:
         case PlotTopic(_, key) if key == "" or topic_of(key) is not None:
             session.plot = replace(choice, topic=key)
+        case PlotFind(_, text):
+            session.plot = replace(choice, text=text)
         case PlotAdd(_, key, path) if path in {one.path for one in model.plots.fields_of(key)}:
             session.plot = choice.adding(SeriesName(key, path))
         case PlotRemove(_, key, path):

@@ -40,6 +40,7 @@ WORDS: Mapping[str, type[page.PageAction]] = {
     "wind": page.SetWind,
     "launch": page.LaunchMission,
     "plot-topic": plots.PlotTopic,
+    "plot-find": plots.PlotFind,
     "plot-add": plots.PlotAdd,
     "plot-remove": plots.PlotRemove,
     "plot-window": plots.PlotWindow,

@@ -50,6 +50,8 @@ class PlotChoice:
     """The simulation time [s] at which the picture stands still; None while it goes on."""
     topic: str = ""
     """The key whose fields are listed."""
+    text: str = ""
+    """What is searched for among all of them."""
 
     def adding(self, name: SeriesName) -> "PlotChoice":
         """With one more number, if there is room."""

@@ -4,6 +4,7 @@ import { on, say } from './link.js';
 import { opened, show } from './tabs.js';
 import './driving.js';
 import './graph.js';
+import './chart.js';
 import { shape } from './scene.js';
 import './handles.js';
 import './keys.js';
@@ -68,8 +69,10 @@ document.addEventListener('change', event => {
 for (const [type, held] of [['pointerdown', 'yes'], ['pointerup', '']]) document.addEventListener(type, event => {  // a slider stays under the pointer
   if (event.target.matches?.('#gcs input[type=range]')) setTimeout(() => held ? event.target.dataset.held = held : delete event.target.dataset.held, held ? 0 : 400);
 });
-document.addEventListener('input', event => {  // a slider steers while it is drawn
-  if (event.target.matches?.('#gcs input[type=range][data-do]')) say(...word(event.target), event.target.valueAsNumber);
+document.addEventListener('input', event => {  // a slider steers while it is drawn, a list follows what is searched for as it is typed
+  const field = event.target;
+  if (field.matches?.('#gcs input[type=range][data-do]')) say(...word(field), field.valueAsNumber);
+  else if (field.matches?.('#gcs input[type=search][data-do]')) say(...word(field), field.value);
 });
 document.addEventListener('submit', event => {
   event.preventDefault();

@@ -88,7 +88,7 @@ def _filters(choice: GraphChoice, vehicle: str) -> Html:
     labels = {"vehicle": vehicle or "system", "all": "all", "problems": "problems"}
     scopes = joined(button(label, "topics-scope", scope, style="", pressed=scope == choice.scope) for scope, label in labels.items())
     text = html(
-        "<input type='text' data-key='topics-text' aria-label='part of a topic, a type or a service' placeholder='filter' "
+        "<input type='search' data-key='topics-text' aria-label='part of a topic, a type or a service' placeholder='filter' "
         "maxlength='64' value='{}' {}/>",
         choice.text,
         does("topics-text"),

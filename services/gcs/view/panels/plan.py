@@ -130,6 +130,8 @@ def _in_words(item: MissionItem) -> str:
         return f"from item {item.jump_to + 1}, {'for ever' if item.repeat < 0 else f'{item.repeat} times'}"
     if item.kind == MissionItem.SPEED:
         return f"{item.speed:.1f} m/s" if item.speed else "cruise"
+    if item.kind == MissionItem.TRIGGER_DISTANCE:
+        return f"a picture every {item.distance:.1f} m" if item.distance > 0 else "no more pictures"
     return ""
 
 

@@ -14,14 +14,15 @@ from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
-from uvf.maths.decimation import min_max, round_ticks
+from services.gcs.view.panels.chart import BOTTOM, TOP, ChartFrame
+from uvf.maths.decimation import min_max
 
 Floats = NDArray[np.float64]
 
-WIDTH, HEIGHT = 340.0, 170.0
-LEFT, RIGHT, TOP, BOTTOM = 46.0, 8.0, 8.0, 20.0
+HEIGHT = 170.0
 MOST_POINTS = 600
 MOST_EVENTS = 30
+MOST_FOUND = 40
 FLATTEST = 1e-6
 
 
@@ -60,23 +61,18 @@ def _chart(model: Model, choice: PlotChoice, unit: str, members: Sequence[int], 
     begin = end - choice.window
     curves = [(i, *_points(model.plots.series.get(choice.series[i]), begin, end)) for i in members]
     low, high = _range([values for _, _, values in curves])
-    frame = _Frame(begin, end, low, high)
-    lines = joined(frame.line(i, t, values) for i, t, values in curves)
+    frame = ChartFrame(HEIGHT, begin, end, low, high)
+    lines = joined(_curve(frame, i, choice.series[i].path, t, values) for i, t, values in curves)
     label = f"{unit or 'numbers'} over {choice.window:.0f} s: {', '.join(choice.series[i].path for i in members)}"
     return html(
-        "<svg class='g-chart' role='img' aria-label='{}' viewBox='0 0 {:.0f} {:.0f}' width='100%' data-begin='{:.3f}' data-end='{:.3f}'>"
-        "{}{}{}<text x='{}' y='{}' class='g-unit'>{}</text></svg>",
+        "<svg class='g-chart' role='img' aria-label='{}' data-unit='{}' data-over='s' {}>{}{}{}{}</svg>",
         label,
-        WIDTH,
-        HEIGHT,
-        begin,
-        end,
-        frame.grid(),
-        frame.events(model),
-        lines,
-        LEFT + 4,
-        TOP + 10,
         unit,
+        frame.box(),
+        frame.grid(),
+        _events(frame, model),
+        lines,
+        frame.unit(unit),
     )
 
 
@@ -98,73 +94,34 @@ def _range(curves: Sequence[Floats]) -> tuple[float, float]:
     return low - room, high + room
 
 
-class _Frame:
-    """Where times and values of a chart lie."""
+def _curve(frame: ChartFrame, colour: int, name: str, t: Floats, values: Floats) -> Html:
+    """One curve; it breaks where a value is NaN."""
+    parts: list[str] = []
+    pen = "M"
+    for at, value in zip(t.tolist(), values.tolist(), strict=True):
+        if np.isfinite(value):
+            parts.append(f"{pen}{frame.x(at):.1f} {frame.y(value):.1f}")
+            pen = "L"
+        else:
+            pen = "M"
+    return html("<path class='g-curve g-c{}' data-name='{}' d='{}'/>", colour, name, "".join(parts))
 
-    def __init__(self, begin: float, end: float, low: float, high: float) -> None:
-        self.begin, self.end, self.low, self.high = begin, end, low, high
 
-    def x(self, t: float) -> float:
-        """px"""
-        return LEFT + (t - self.begin) / (self.end - self.begin) * (WIDTH - LEFT - RIGHT)
-
-    def y(self, value: float) -> float:
-        """px"""
-        return HEIGHT - BOTTOM - (value - self.low) / (self.high - self.low) * (HEIGHT - TOP - BOTTOM)
-
-    def grid(self) -> Html:
-        """Lines and numbers of both axes."""
-        values = round_ticks(self.low, self.high, 5)
-        digits = max(0, -int(np.floor(np.log10(values[1] - values[0]) + 1e-9))) if len(values) > 1 else 2
-        rows = joined(
-            html(
-                "<path d='M{} {:.1f}H{}'/><text x='{}' y='{:.1f}' class='g-end'>{:.{digits}f}</text>",
-                LEFT,
-                self.y(value),
-                WIDTH - RIGHT,
-                LEFT - 4,
-                self.y(value) + 3.5,
-                value + 0.0,
-                digits=digits,
-            )
-            for value in values
+def _events(frame: ChartFrame, model: Model) -> Html:
+    """A line where something happened: warnings and worse, and what operators asked for."""
+    seen = [e for e in model.log if frame.begin <= e.t <= frame.end and (e.severity >= Event.NOTICE or e.of_operator)][-MOST_EVENTS:]
+    return joined(
+        html(
+            "<path class='g-event g-e-{}' d='M{:.1f} {}V{}'><title>{:.1f} s: {}</title></path>",
+            e.kind,
+            frame.x(e.t),
+            TOP,
+            frame.height - BOTTOM,
+            e.t,
+            e.text,
         )
-        columns = joined(
-            html("<path d='M{:.1f} {}V{}'/><text x='{:.1f}' y='{}' class='g-mid'>{:g}</text>", *self._column(t))
-            for t in round_ticks(max(self.begin, 0.0), self.end, 6)
-        )
-        return html("<g class='g-grid'>{}{}</g>", rows, columns)
-
-    def _column(self, t: float) -> tuple[float, float, float, float, float, float]:
-        return self.x(t), TOP, HEIGHT - BOTTOM, self.x(t), HEIGHT - 6, round(t, 3)
-
-    def line(self, colour: int, t: Floats, values: Floats) -> Html:
-        """One curve; it breaks where a value is NaN."""
-        parts: list[str] = []
-        pen = "M"
-        for at, value in zip(t.tolist(), values.tolist(), strict=True):
-            if np.isfinite(value):
-                parts.append(f"{pen}{self.x(at):.1f} {self.y(value):.1f}")
-                pen = "L"
-            else:
-                pen = "M"
-        return html("<path class='g-curve g-c{}' d='{}'/>", colour, "".join(parts))
-
-    def events(self, model: Model) -> Html:
-        """A line where something happened: warnings and worse, and what operators asked for."""
-        seen = [e for e in model.log if self.begin <= e.t <= self.end and (e.severity >= Event.NOTICE or e.of_operator)][-MOST_EVENTS:]
-        return joined(
-            html(
-                "<path class='g-event g-e-{}' d='M{:.1f} {}V{}'><title>{:.1f} s: {}</title></path>",
-                e.kind,
-                self.x(e.t),
-                TOP,
-                HEIGHT - BOTTOM,
-                e.t,
-                e.text,
-            )
-            for e in seen
-        )
+        for e in seen
+    )
 
 
 def _legend(model: Model, choice: PlotChoice) -> Html:
@@ -180,15 +137,38 @@ def _entry(model: Model, i: int, name: SeriesName) -> Html:
 
 
 def _chooser(model: Model, v: VehicleModel, choice: PlotChoice) -> Html:
-    """Topics of the vehicle on show and of the system, and the numbers of the chosen one."""
-    keys = [topic.at(v.name) for topic in TOPICS.values() if "<source>" not in topic.key]
+    """A search through all numbers of the vehicle on show and of the system; or their topics, and the numbers of the chosen one."""
+    keys = sorted(topic.at(v.name) for topic in TOPICS.values() if "<source>" not in topic.key)
+    search = html(
+        "<input type='search' data-key='plot-find' aria-label='Search numbers' placeholder='search, as in: airspeed' value='{}' {}>",
+        choice.text,
+        does("plot-find"),
+    )
+    found = _found(model, keys, choice.text) if choice.text.strip() else _listed(model, keys, choice)
+    return html("<h2 class='g-h'>Any number</h2>{}{}", search, found)
+
+
+def _found(model: Model, keys: Sequence[str], text: str) -> Html:
+    """The numbers whose topic, name and unit hold every word of a text."""
+    words = text.lower().split()
+    every = (SeriesName(key, one.path) for key in keys for one in model.plots.fields_of(key))
+    found = [name for name in every if all(word in f"{name} {unit_of(name)}".lower() for word in words)]
+    rows = joined(_adds(name, str(name)) for name in found[:MOST_FOUND])
+    more = html("<p class='g-why'>and {} more: write more of the name</p>", len(found) - MOST_FOUND) if len(found) > MOST_FOUND else ""
+    return html("<div class='g-fields'>{}{}</div>", rows if found else html("<p class='g-empty'>No number is called so.</p>"), more)
+
+
+def _listed(model: Model, keys: Sequence[str], choice: PlotChoice) -> Html:
     options = joined(
         html("<option value='{}'{}>{}</option>", key, html(" selected") if key == choice.topic else html(""), key.partition("/")[2])
-        for key in ("", *sorted(keys))
+        for key in ("", *keys)
     )
-    fields = joined(
-        button(f"+ {one.path}{f' [{one.unit}]' if one.unit else ''}", "plot-add", choice.topic, one.path, style="g-link")
-        for one in (model.plots.fields_of(choice.topic) if choice.topic else ())
-    )
+    numbers = model.plots.fields_of(choice.topic) if choice.topic else ()
+    fields = joined(_adds(SeriesName(choice.topic, one.path), one.path) for one in numbers)
     select = html("<select {} aria-label='Topic to plot from'>{}</select>", does("plot-topic"), options)
-    return html("<h2 class='g-h'>Any number</h2>{}<div class='g-fields'>{}</div>", select, fields)
+    return html("{}<div class='g-fields'>{}</div>", select, fields)
+
+
+def _adds(name: SeriesName, text: str) -> Html:
+    unit = unit_of(name)
+    return button(f"+ {text}{f' [{unit}]' if unit else ''}", "plot-add", name.key, name.path, style="g-link")

@@ -8,8 +8,9 @@ import pytest
 from schemas import topics
 from schemas.messages import Event
 from services.gcs.actions.page import OpenTab, Select
-from services.gcs.actions.plots import PlotAdd, PlotHold, PlotPreset, PlotRemove, PlotTopic, PlotWindow
+from services.gcs.actions.plots import PlotAdd, PlotFind, PlotHold, PlotPreset, PlotRemove, PlotTopic, PlotWindow
 from services.gcs.state.plot_choice import MOST_SERIES
+from services.gcs.view.panels.plot import MOST_FOUND
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 
@@ -29,7 +30,7 @@ def panel(station):
 
 
 def curves(station):
-    return re.findall(r"<path class='g-curve g-c(\d)' d='([^']*)'", panel(station))
+    return re.findall(r"<path class='g-curve g-c(\d)' data-name='[^']*' d='([^']*)'", panel(station))
 
 
 def test_an_empty_tab_says_what_to_press_and_hears_nothing(station):
@@ -71,6 +72,19 @@ def test_events_stand_in_every_chart(station):
     station.script.say(UAV, "gust <b>", Event.WARNING, t=1.0)
     station.run(1.0)
     assert panel(station).count("gust &lt;b&gt;") == 2
+
+
+def test_numbers_are_found_by_any_words_of_their_names(station):
+    station.press(PlotFind(ME, "AIRSPEED nav"), seconds=1.0)
+    assert "+ milvus/nav/state airspeed [m/s]" in station.page.now.words and "Topic to plot from" not in panel(station)
+    station.push("+ milvus/nav/state airspeed [m/s]", seconds=2.0)
+    assert "24.3 m/s" in panel(station)
+    station.press(PlotFind(ME, "."), seconds=1.0)
+    assert panel(station).count("+ milvus/") == MOST_FOUND and "more: write more of the name" in panel(station)
+    station.press(PlotFind(ME, "<x>"), seconds=1.0)
+    assert "No number is called so" in panel(station) and "<x>" not in panel(station)
+    station.press(PlotFind(ME, " "), seconds=1.0)
+    assert "Topic to plot from" in panel(station)
 
 
 def test_the_numbers_of_a_topic_are_listed_and_added(station):
