@@ -50,7 +50,7 @@ from services.gcs.orders.browsing import Browsing
 from services.gcs.orders.by_hand import ManualDriving
 from services.gcs.orders.handover import ControlHandover
 from services.gcs.orders.map_orders import MapOrders
-from services.gcs.orders.offers import SOURCE, offer_of
+from services.gcs.orders.offers import SOURCE, cannot_move, offer_of
 from services.gcs.orders.orders import OrderBook
 from services.gcs.orders.outbox import Outbox
 from services.gcs.orders.place_orders import PlaceOrders
@@ -220,7 +220,7 @@ class Commander:
         vehicle, request = self._model.vehicles.get(name), ModeRequest(mode=Mode.MODE_MANUAL, source=SOURCE)
         if session.vehicle != name or vehicle is None or not self.by_hand.can_drive(name):
             return
-        if self._orders.begin(t, session, name, request, self._places.cannot_move(vehicle)) is not None:
+        if self._orders.begin(t, session, name, request, cannot_move(self._model, vehicle)) is not None:
             out.call("mode", name, request)
             self._places.forget_mode(name)
             self.by_hand.take(t, session.page, name)

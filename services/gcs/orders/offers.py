@@ -64,15 +64,17 @@ def _mode(v: VehicleModel, key: str, label: str, mode: Any, hint: str, why_not: 
     return Offer(key, label, ModeRequest(mode=mode, source=SOURCE), hint, why_not, lit)
 
 
-def _bound(model: Model, v: VehicleModel) -> str:
-    """Why it would not move, whatever it is told; "" if it would."""
+def cannot_move(model: Model, v: VehicleModel) -> str:
+    """Why it would not move, whatever it is told, and the mend; "" if it would."""
     if model.stopped:
         return STOPPED
-    return "" if v.status is not None and v.status.armed else f"{v.name} is disarmed: arm it first"
+    if v.status is None:
+        return f"{v.name} has not told its state yet: wait until it is heard"
+    return "" if v.status.armed else f"{v.name} is disarmed: arm it first"
 
 
 def _of_rover(model: Model, v: VehicleModel) -> Iterator[Offer]:
-    bound = _bound(model, v)
+    bound = cannot_move(model, v)
     yield _mode(v, "hold", "Hold", Mode.MODE_HOLD, "Stop and stand")
     yield _mode(v, "mission", "Mission", Mode.MODE_MISSION, "Go on with the job, or with the goal", bound)
     if v.member.file.ground is not None:
@@ -85,7 +87,7 @@ def _of_rover(model: Model, v: VehicleModel) -> Iterator[Offer]:
 def _of_aircraft(model: Model, v: VehicleModel) -> Iterator[Offer]:
     armed = v.status is not None and v.status.armed
     landed = v.status is not None and v.status.landed
-    bound = _bound(model, v)
+    bound = cannot_move(model, v)
     grounded = f"{v.name} is on the ground: take off first" if landed else ""
     empty = "" if v.mission is not None and v.mission.items else "no mission is loaded: draw one in Plan and upload it"
     if landed:

@@ -5,7 +5,7 @@ import numpy as np
 from schemas.messages import GoalRequest, HomeCommand, Mode, ModeRequest, PreviewRequest, Vector3, VehicleCommandRequest
 from services.gcs.orders.by_hand import ManualDriving
 from services.gcs.orders.map_orders import MapOrders
-from services.gcs.orders.offers import SOURCE, STOPPED
+from services.gcs.orders.offers import SOURCE, cannot_move
 from services.gcs.orders.orders import OrderBook
 from services.gcs.orders.outbox import Outbox
 from services.gcs.state.pointing import TOOLS, Pointed
@@ -97,15 +97,7 @@ class PlaceOrders:
         """Why a goal would be accepted and yet nothing would move, and the mend; empty when it would."""
         if not vehicle.flies and not self._is_on_floor(point):
             return "too far from the floor"
-        return self.cannot_move(vehicle)
-
-    def cannot_move(self, vehicle: VehicleModel) -> str:
-        """Why the vehicle would not move, and the mend; empty when it would."""
-        if self._model.stopped:
-            return STOPPED
-        if vehicle.status is not None and not vehicle.status.armed:
-            return f"{vehicle.name} is disarmed: arm it first"
-        return ""
+        return cannot_move(self._model, vehicle)
 
     def _set_home(self, t: float, session: BrowserSession, at: Pointed, out: Outbox) -> None:
         session.pointed = None
