@@ -2,7 +2,7 @@
 
 import sys
 
-from services.gcs.export import LogExporter, NoExporter
+from services.gcs.export import NoExporter
 from services.gcs.service import GroundStation
 from services.gcs.surveying import SurveyProcess
 from uvf.models.scenario import Scenario
@@ -16,6 +16,7 @@ def build(site: Scenario) -> list[ServiceInstance]:
     address = address_from()
 
     def make() -> GroundStation:
+        from services.gcs.log_exporter import LogExporter
         from services.gcs.page.viser_page import ViserPage
         from services.gcs.view.scene.cameras import cameras
         from services.gcs.zenoh_watch import ZenohWatch

@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from services.gcs.export import PATH, LogExporter
+from services.gcs.log_exporter import PATH, LogExporter
 from services.gcs.page.viser_replay import write_replay
 from tests.runtime.log.test_recording import latched, sample
 from tests.services.gcs.recorded import demo_log
