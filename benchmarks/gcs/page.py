@@ -153,8 +153,8 @@ async def _remembered(station: Station) -> list[float]:
 
 
 CASES = {
-    "1 page": partial(pages, 1, 60.0),
-    "3 pages": partial(pages, 3, 60.0),
-    "slow page": partial(slow_page, 60.0),
-    "half an hour": long_run,
+    "one_page": partial(pages, 1, 60.0),
+    "three_pages": partial(pages, 3, 60.0),
+    "slow_page": partial(slow_page, 60.0),
+    "half_an_hour": long_run,
 }

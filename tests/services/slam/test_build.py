@@ -35,7 +35,7 @@ def with_job(site, **job):
 
 def test_only_ground_vehicles_get_them(site):
     found = [(host.vehicle, host.service.name) for build in BUILDS for host in build(site)]
-    names = ("odometry", "mapping", "planner", "tracker", "autopilot_ground")
+    names = ("odometry", "mapping", "map_server", "planner", "tracker", "autopilot_ground")
     assert found == [("burger", name) for name in names]
 
 
