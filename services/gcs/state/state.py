@@ -11,6 +11,7 @@ from schemas.messages import (
     Event,
     ExternalVehicle,
     NavState,
+    Odometry,
     SimObject,
     SimObjects,
     StopEngagement,
@@ -133,6 +134,8 @@ class Model:
                 continue
             setattr(vehicle, what, message)
             vehicle.heard_at[what] = t
+            if isinstance(message, NavState if vehicle.flies else Odometry) and what != "truth":
+                vehicle.trends.hear(message)
             if what in ("nav", "pose") and vehicle.place is not None:
                 vehicle.track.add(vehicle.place.position)
             elif what == "scan":

@@ -33,6 +33,7 @@ from services.gcs.state.area_draft import DrawnAreas
 from services.gcs.state.plan_draft import PlanDraft
 from services.gcs.state.plan_outlook import PlanOutlook
 from services.gcs.state.tracks import VehicleTrack
+from services.gcs.state.trends import Trends
 from uvf.maths.rotations import matrix
 from uvf.maths.se3 import apply
 from uvf.models.scenario import MissionVehicle
@@ -127,8 +128,13 @@ class VehicleModel:
     outlook: PlanOutlook | None = None
     aim: GimbalCommand = field(default_factory=GimbalCommand)
     """Where its gimbal was last told from here to look."""
+    trends: Trends = field(init=False)
+    """The last minutes of what its instrument shows."""
     _placed: tuple[NavState | PoseInFrame, DisplayPose] | None = None
     """The newer estimate, and the pose in it."""
+
+    def __post_init__(self) -> None:
+        self.trends = Trends(self.flies)
 
     @property
     def flies(self) -> bool:

@@ -32,6 +32,7 @@ from services.gcs.view.panels import (
     run_panel,
     status,
     teleoperation,
+    trends,
 )
 from services.gcs.view.panels.overview import Overview
 from services.gcs.view.panels.timeline import TimeBar, timeline
@@ -45,6 +46,7 @@ Floats = NDArray[np.float64]
 HELP = Path(__file__).with_name("panels") / "help.html"
 COLOURS: Mapping[str, Colour] = {"/own/way": (150, 160, 175), "/own/drawn": (140, 150, 168), "/own/flown": (232, 74, 214)}
 AREA: Colour = (90, 200, 250)
+FLOWN_PERIOD = 0.5  # s between two drawings of a line that is being flown ahead
 SHED_AFTER = 1.0  # s that a browser may be behind until it gets no more pictures
 FAST = ("time", "run", "plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
 EVERY = 2
@@ -57,6 +59,7 @@ SLOW = (
     "fleet",
     "table",
     "cameras",
+    "trends",
     "facts",
     "overview",
     "log",
@@ -71,7 +74,7 @@ SLOW = (
     "help",
 )
 OF_TAB: Mapping[str, tuple[str, ...]] = {
-    "fly": ("instrument", "picture", "cameras", "facts"),
+    "fly": ("instrument", "picture", "cameras", "trends", "facts"),
     "drive": ("instrument", "picture", "wheel", "mapping", "cameras", "facts"),
     "plan": ("plan", "handles"),
     "plot": ("plot",),
@@ -137,7 +140,7 @@ class Composer:
             draws.pop("picture", None)
         words |= self._due(draws, new)
         self._own[session.page] = (on_show, words)
-        nodes: Mapping[str, Node] = self._preview(session)
+        nodes: Mapping[str, Node] = self._preview(session, t)
         places: Mapping[str, DisplayPose] = {}
         if session.past is not None:
             then = self._past_view(session)
@@ -182,6 +185,7 @@ class Composer:
             in_tabs |= {
                 "plot": lambda: plot.plot_panel(model, v, session),
                 "instrument": self._once("instrument", v, lambda: facts.instrument(v)),
+                "trends": lambda: trends.trend_charts(v.trends, self._sim_time(session) if session.past is not None else None),
                 "wheel": lambda: teleoperation.wheel(v, self._by_hand, session.page),
                 "picture": lambda: camera_panel.picture(v, session, t),
                 "mapping": lambda: map_panel.map_panel(v, session, t),
@@ -230,14 +234,14 @@ class Composer:
             self._fitted[session.page] = (aspect, cameras(self._model.site, aspect))
         return self._fitted[session.page][1].get(session.view)
 
-    def _preview(self, session: BrowserSession) -> dict[str, Node]:
+    def _preview(self, session: BrowserSession, t: float) -> dict[str, Node]:
         """What only this page sees: the way to the place that it has clicked, and the mission that is drawn in its tab Plan."""
         made = self._previews.setdefault(session.page, {})
         lines: dict[str, tuple[object, Floats | None]] = {"/own/way": _way(session.pointed)}
         v = self._model.vehicles.get(session.vehicle)
         if v is not None and v.outlook is not None and session.tab == "plan":
             lines["/own/drawn"] = ((v.outlook, "drawn"), v.outlook.places)
-            lines["/own/flown"] = ((v.outlook, len(v.outlook.line)), v.outlook.line)
+            lines["/own/flown"] = ((v.outlook, "flown" if v.outlook.is_flown else round(t / FLOWN_PERIOD)), v.outlook.line)
         if v is not None and session.tab == "plan" and (area := v.areas.of(session.plan_part)) is not None:
             for i, ring in enumerate(area.rings):
                 if (points := outline_of(ring)) is not None:

@@ -4,7 +4,7 @@ import { fill, on, say } from './link.js';
 
 // Each with the slots that its panel consists of.
 const TABS = {
-  fly: ['Fly', 'instrument', 'cameras', 'picture', 'facts'],
+  fly: ['Fly', 'instrument', 'cameras', 'picture', 'trends', 'facts'],
   plan: ['Plan', 'plan'],
   drive: ['Drive', 'instrument', 'wheel', 'mapping', 'cameras', 'picture', 'facts'],
   plot: ['Plot', 'plot'],

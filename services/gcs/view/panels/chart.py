@@ -3,9 +3,12 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from services.gcs.view.markup import Html, html, joined
 from uvf.maths.decimation import round_ticks
+
+Floats = NDArray[np.float64]
 
 LEFT, RIGHT, TOP, BOTTOM = 46.0, 8.0, 8.0, 20.0
 WIDTH = 340.0
@@ -63,3 +66,16 @@ class ChartFrame(NamedTuple):
     def unit(self, name: str) -> Html:
         """The unit of its numbers."""
         return html("<text x='{}' y='{}' class='g-unit'>{}</text>", LEFT + 4, TOP + 10, name)
+
+
+def curve(frame: ChartFrame, colour: int, name: str, t: Floats, values: Floats) -> Html:
+    """One curve in the ``colour`` of this number, 0 to 7: values (n,) at t (n,); it breaks where a value is NaN."""
+    parts: list[str] = []
+    pen = "M"
+    for at, value in zip(t.tolist(), values.tolist(), strict=True):
+        if np.isfinite(value):
+            parts.append(f"{pen}{frame.x(at):.1f} {frame.y(value):.1f}")
+            pen = "L"
+        else:
+            pen = "M"
+    return html("<path class='g-curve g-c{}' data-name='{}' d='{}'/>", colour, name, "".join(parts))

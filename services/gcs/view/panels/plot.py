@@ -14,7 +14,7 @@ from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.chart import BOTTOM, TOP, ChartFrame
+from services.gcs.view.panels.chart import BOTTOM, TOP, ChartFrame, curve
 from uvf.maths.decimation import min_max
 
 Floats = NDArray[np.float64]
@@ -62,7 +62,7 @@ def _chart(model: Model, choice: PlotChoice, unit: str, members: Sequence[int], 
     curves = [(i, *_points(model.plots.series.get(choice.series[i]), begin, end)) for i in members]
     low, high = _range([values for _, _, values in curves])
     frame = ChartFrame(HEIGHT, begin, end, low, high)
-    lines = joined(_curve(frame, i, choice.series[i].path, t, values) for i, t, values in curves)
+    lines = joined(curve(frame, i, choice.series[i].path, t, values) for i, t, values in curves)
     label = f"{unit or 'numbers'} over {choice.window:.0f} s: {', '.join(choice.series[i].path for i in members)}"
     return html(
         "<svg class='g-chart' role='img' aria-label='{}' data-unit='{}' data-over='s' {}>{}{}{}{}</svg>",
@@ -92,19 +92,6 @@ def _range(curves: Sequence[Floats]) -> tuple[float, float]:
     low, high = float(known.min()), float(known.max())
     room = max(0.08 * (high - low), FLATTEST, 0.02 * abs(high) if high == low else 0.0)
     return low - room, high + room
-
-
-def _curve(frame: ChartFrame, colour: int, name: str, t: Floats, values: Floats) -> Html:
-    """One curve; it breaks where a value is NaN."""
-    parts: list[str] = []
-    pen = "M"
-    for at, value in zip(t.tolist(), values.tolist(), strict=True):
-        if np.isfinite(value):
-            parts.append(f"{pen}{frame.x(at):.1f} {frame.y(value):.1f}")
-            pen = "L"
-        else:
-            pen = "M"
-    return html("<path class='g-curve g-c{}' data-name='{}' d='{}'/>", colour, name, "".join(parts))
 
 
 def _events(frame: ChartFrame, model: Model) -> Html:

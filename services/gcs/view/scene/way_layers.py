@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from schemas.messages import NavStatus
 from services.gcs.state.vehicle_model import VehicleModel
-from services.gcs.view.drawing import Colour, Points, Polyline, TextNode
+from services.gcs.view.drawing import Colour, MeshNode, Points, Polyline, TextNode
 from services.gcs.view.scene.fences import fence_nodes
 from services.gcs.view.scene.levels import UP
 from services.gcs.view.scene.node_cache import Layers, NodeCache, Nodes
@@ -20,6 +20,8 @@ Floats = NDArray[np.float64]
 ROUTE: Colour = (232, 74, 214)
 SCAN: Colour = (255, 92, 92)
 ASKED: Colour = (250, 190, 60)
+SHADOW: Colour = (20, 24, 32)
+SHADOW_RADIUS = 4.0  # m
 
 
 class WayLayers:
@@ -105,15 +107,17 @@ class WayLayers:
         return self._nodes.make(f"label {v.name}", (x, y, z), lambda: TextNode(f"{v.name}  {z:.0f} m", (x, y, z + 2.5)))
 
     def _height(self, v: VehicleModel) -> Nodes:
-        """A line from an aircraft down to the ground, so that its place can be read.
+        """A line from an aircraft down to the ground and its shadow there, so that its place can be read.
 
-        It hangs on a frame, and its points are whole metres: a browser moves frames at once, new points a while later.
+        They hang on a frame, and their heights are whole metres: a browser moves frames at once, new points a while later.
         """
         if v.place is None or not v.flies:
             return {}
         down = math.ceil(v.place.position[2])
         foot = np.array(((0.0, 0.0, -down), (0.0, 0.0, 0.0)))
-        return {"/line": self._nodes.make(f"height {v.name}", down, lambda: Polyline(foot, rgb_of(v.colour), 1.5))[""]}
+        line = self._nodes.make(f"height {v.name}", down, lambda: Polyline(foot, rgb_of(v.colour), 1.5))
+        shadow = self._nodes.make(f"shadow {v.name}", down, lambda: _disc(3 * UP - down, SHADOW_RADIUS, SHADOW))
+        return {"/line": line[""], "/shadow": shadow[""]}
 
 
 def mission_points(v: VehicleModel) -> Floats:
@@ -131,6 +135,15 @@ def _distinct(points: Floats) -> Floats:
 
 def _points(poses: Any) -> Floats:
     return np.array([(p.position.x, p.position.y, p.position.z) for p in poses])
+
+
+def _disc(z: float, radius: float, colour: Colour) -> MeshNode:
+    """A flat disc at the height ``z`` [m, parent's frame]."""
+    a = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    rim = np.column_stack((radius * np.cos(a), radius * np.sin(a), np.full(len(a), z)))
+    n = np.arange(len(a))
+    faces = np.column_stack((np.full(len(a), len(a)), n, (n + 1) % len(a)))
+    return MeshNode(np.vstack((rim, (0.0, 0.0, z))), faces, colour, 0.45)
 
 
 def _ring(x: float, y: float, colour: Colour) -> Polyline:

@@ -108,6 +108,8 @@ def test_an_aircraft_is_labelled_with_its_height(station):
     assert top == pytest.approx(uav_at(2.0)[0], abs=0.01)
     assert foot[:2] == pytest.approx(top[:2])
     assert -1.0 < foot[2] <= 0.0
+    shadow = frame.position + station.page.now.nodes[f"/height/{UAV}/shadow"].vertices
+    assert np.abs(shadow[:, 2]).max() < 1.0 and shadow.mean(axis=0)[:2] == pytest.approx(top[:2])
 
 
 def test_no_node_that_has_a_place_of_its_own_is_the_parent_of_another(station):

@@ -1,0 +1,40 @@
+"""What a vehicle's instrument shows, over the last ten minutes: a few numbers five times a second, for the small charts beside it."""
+
+from typing import NamedTuple
+
+from schemas.messages import NavState, Odometry
+from services.gcs.state.plot_series import PlotSeries
+from uvf.runtime.messages.convert import seconds
+
+PERIOD = 0.2  # s, simulation
+
+
+class Trend(NamedTuple):
+    """One number over time. name: with its unit, as it is shown."""
+
+    name: str
+    unit: str
+    series: PlotSeries
+
+
+class Trends:
+    """Of an aircraft its airspeed and altitude, of a ground vehicle its speed and turn rate."""
+
+    def __init__(self, flies: bool) -> None:
+        names = (("airspeed", "m/s"), ("altitude", "m")) if flies else (("speed", "m/s"), ("turn rate", "rad/s"))
+        self.all = tuple(Trend(name, unit, PlotSeries()) for name, unit in names)
+        self.newest: float | None = None  # s, simulation
+
+    def hear(self, message: NavState | Odometry) -> None:
+        """Takes an aircraft's state or a ground vehicle's odometry."""
+        t = seconds(message.timestamp)
+        if self.newest is not None and 0.0 <= t - self.newest < PERIOD - 1e-6:
+            return
+        self.newest = t
+        values = (
+            (message.airspeed, message.position.z)
+            if isinstance(message, NavState)
+            else (message.linear_velocity.x, message.angular_velocity.z)
+        )
+        for trend, value in zip(self.all, values, strict=True):
+            trend.series.add(t, value)
