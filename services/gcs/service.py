@@ -62,7 +62,7 @@ from services.gcs.orders.commands import Commander
 from services.gcs.orders.offers import SOURCE
 from services.gcs.orders.time_travel import TimeTravel
 from services.gcs.state import past
-from services.gcs.state.history import RecentHistory
+from services.gcs.state.history import CLOCK, OBJECTS, RecentHistory
 from services.gcs.state.state import Model
 from services.gcs.surveying import SurveyPlanner
 from services.gcs.view.composer import Composer
@@ -201,7 +201,7 @@ class GroundStation(Service):
     def __init__(self, site: Scenario, page: Page, watch: BusWatch, exporter: Exporter, surveys: SurveyPlanner) -> None:
         self._page = page
         self._model = Model(site)
-        self._exporter = exporter
+        self._exporter, self._surveys = exporter, surveys
         self._history = RecentHistory()
         self._logged = 0
         time = TimeTravel(self._model, self._history, exporter)
@@ -224,10 +224,11 @@ class GroundStation(Service):
 
     def _keep(self, t: float, now: Inputs, newest: Mapping[str, Mapping[str, Message]]) -> None:
         """For those who look back."""
-        for what, messages in newest.items():
-            self._history.hear(t, what, messages)
-        self._history.hear(t, past.EXTERNAL, now.external)
-        alone = {(past.CLOCK, ""): now.clock, (past.OBJECTS, "ground"): now.objects, (past.OBJECTS, "air"): now.aircraft}
+        shown = self._model.vehicles.keys()
+        for what, messages in (*newest.items(), (past.EXTERNAL, now.external)):
+            self._history.hear(t, what, {name: message for name, message in messages.items() if name in shown})
+        self._history.only(shown)
+        alone = {(CLOCK, ""): now.clock, (OBJECTS, "ground"): now.objects, (OBJECTS, "air"): now.aircraft}
         for (what, name), message in alone.items():
             if message is not None:
                 self._history.hear(t, what, {name: message})
@@ -269,4 +270,5 @@ class GroundStation(Service):
         """Stops the page's server and the watch."""
         self._listening.close()
         self._exporter.close()
+        self._surveys.close()
         self._page.close()

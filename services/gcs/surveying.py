@@ -43,6 +43,10 @@ class SurveyPlanner(Protocol):
         """What is done since the last call: vehicle, items, and why there are none."""
         ...
 
+    def close(self) -> None:
+        """Begins with no other one."""
+        ...
+
 
 class SurveyProcess:
     """A survey planner in a process of its own."""
@@ -60,12 +64,18 @@ class SurveyProcess:
         done = [name for name, job in self._jobs.items() if job.done()]
         return [(name, *_result(self._jobs.pop(name))) for name in done]
 
+    def close(self) -> None:
+        """As ``SurveyPlanner`` says."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
 
 def _result(job: Future[list[Waypoint]]) -> tuple[list[Waypoint], str]:
     try:
         return job.result(), ""
-    except (BadInput, Died) as error:
+    except (BadInput, Died, OSError) as error:
         return [], str(error)
+    except msgspec.ValidationError as error:
+        return [], f"survey: its flight leaves what a mission can say: {error}; draw the field nearer to the world's origin"
 
 
 def survey_items(survey: FieldSurvey) -> list[Waypoint]:

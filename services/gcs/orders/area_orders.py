@@ -30,7 +30,6 @@ from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.surveying import FieldSurvey, SurveyPlanner
 from uvf.models.mission.fence import ACTIONS
-from uvf.runtime.messages.fences import fence_fault
 from uvf.runtime.messages.mission_files import item_from_file
 
 CIRCLE = {True: 50.0, False: 1.0}
@@ -79,15 +78,14 @@ class AreaOrders:
             self._upload(t, session, vehicle, action, out)
         elif why := self._orders.reason_against(session, vehicle):
             self._orders.refuse(t, vehicle, "draw an area", why)
-        else:
+        elif vehicle.flies or not _is_for_aircraft(action):
             session.pointed = None
             self._edit(vehicle, action)
 
     def _upload(self, t: float, session: BrowserSession, v: VehicleModel, action: AreaUpload, out: Outbox) -> None:
         if action.part == "fence":
-            fence = v.areas.fence.message()
-            request: Message = FenceRequest(fence=fence, source=SOURCE)
-            name, why, draft = "set_fence", fence_fault(fence), v.areas.fence
+            request: Message = FenceRequest(fence=v.areas.fence.message(), source=SOURCE)
+            name, why, draft = "set_fence", v.areas.fence.fault, v.areas.fence
         else:
             request = RallyRequest(rally=v.areas.rally.message(v.flies), source=SOURCE)
             name, why, draft = "set_rally", "", v.areas.rally  # type: ignore[assignment]
@@ -141,6 +139,8 @@ class AreaOrders:
     def _make(self, v: VehicleModel) -> None:
         draft, site = v.areas.survey, self._model.site
         corners = draft.rings[0].corners
+        if draft.making:
+            return
         if len(corners) < 3:
             draft.fault = "a field has at least three corners"
             return
@@ -148,6 +148,14 @@ class AreaOrders:
         wind = (v.nav.wind.x, v.nav.wind.y) if v.nav is not None else (0.0, 0.0)
         sizes = draft.height, draft.sidelap, draft.frontlap
         self._surveys.begin(v.name, FieldSurvey(str(v.member.folder), str(site.world_folder), list(corners), *sizes, wind))
+
+
+def _is_for_aircraft(action: OfArea) -> bool:
+    match action:
+        case SurveyMake() | FenceActs(action="land"):
+            return True
+        case _:
+            return getattr(action, "part", "") == "survey"
 
 
 def _set(draft: AreaDraft, name: str, value: float | None) -> None:

@@ -101,6 +101,8 @@ class Browsing:
                 self._by_hand.let_go(t, session.page)
             if name != session.vehicle:
                 session.pointed = None
+                if session.plan_part == "survey" and not self._model.vehicles[name].flies:
+                    session.plan_part = "mission"
             session.vehicle = name
             session.to_confirm = None
 

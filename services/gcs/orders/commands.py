@@ -130,10 +130,8 @@ class Commander:
                 self._take_wheel(t, session, vehicle, out)
             case LeaveWheel(page):
                 self.by_hand.let_go(t, page)
-            case Steer(page, forward, left):
-                self.by_hand.steer(t, page, (forward, left))
-            case Rescale(page, key) if key in SCALINGS:
-                self.by_hand.rescale(t, page, key)
+            case Steer() | Rescale():
+                self._drive(t, session, action)
             case AimGimbal() | GimbalMode():
                 self._aim(t, session, action, out)
             case RunClock() | SetRate() | SetWind() | LaunchMission():
@@ -154,8 +152,10 @@ class Commander:
             return
         session.to_confirm = None
         if self._orders.begin(t, session, name, offer.request, offer.why_not) is not None:
-            if offer.name == "mode" and key != "manual":
-                self.by_hand.free(t, name)
+            if offer.name == "mode":
+                self._places.forget_mode(name)
+                if key != "manual":
+                    self.by_hand.free(t, name)
             out.call(offer.name, name, offer.request)
 
     def _aim(self, t: float, session: BrowserSession, asked: AimGimbal | GimbalMode, out: Outbox) -> None:
@@ -185,7 +185,7 @@ class Commander:
             return
         match action:
             case PlanUpload():
-                why = vehicle.outlook.fault if vehicle.outlook is not None else ""
+                why = self._planning.fault(vehicle)
                 risky = not why and vehicle.status is not None and vehicle.status.armed and vehicle.status.mode == Mode.MODE_MISSION
                 request: Message = self._planning.upload(vehicle)
                 name = "set_mission"
@@ -214,6 +214,16 @@ class Commander:
         out.stop.append(self._voice.engage(now_ns, "pressed on the page") if engaged else self._voice.release(now_ns, stops))
         text = f"STOP ALL {'engaged' if engaged else 'released'} on the page by {called(session.operator)}"
         self._model.note("", text, Event.WARNING if engaged else Event.NOTICE, of_operator=True)
+
+    def _drive(self, t: float, session: BrowserSession, action: Steer | Rescale) -> None:
+        """Who has lost control of the vehicle meanwhile drives it no longer."""
+        vehicle = self._model.vehicles.get(self.by_hand.held_by(session.page))
+        if vehicle is not None and self._orders.reason_against(session, vehicle):
+            self.by_hand.let_go(t, session.page)
+        elif isinstance(action, Steer):
+            self.by_hand.steer(t, session.page, (action.forward, action.left))
+        elif action.key in SCALINGS:
+            self.by_hand.rescale(t, session.page, action.key)
 
     def _take_wheel(self, t: float, session: BrowserSession, name: str, out: Outbox) -> None:
         """Like ``uvf teleop``, it asks for mode MANUAL; arming stays a matter of two clicks."""

@@ -27,6 +27,7 @@ from uvf.runtime.messages.plan_items import plan_items
 
 FIRST_HEIGHT = 60.0  # m, of a first waypoint where nothing tells a better one
 STEPS = 12  # of the flight ahead, with each step of the page: some milliseconds
+LOAD_EVERY = 2.0  # s between two plan files, whoever loads them: to read one takes some tenths of a second at most
 SOON = 4  # steps of the page after an edit, before which nothing is flown ahead: who drags a waypoint edits ten times a second
 
 
@@ -38,6 +39,7 @@ class Planning:
         self._taken: dict[str, Mission | None] = {}
         self._flights: dict[str, PreviewFlight] = {}
         self._waits: dict[str, int] = {}
+        self._loaded = -LOAD_EVERY
 
     def draft(self, v: VehicleModel) -> PlanDraft:
         """The draft of a vehicle; while nobody has touched it, it is what is in force there."""
@@ -72,6 +74,10 @@ class Planning:
 
     def _load(self, v: VehicleModel, draft: PlanDraft, name: str, text: str) -> None:
         """All of a file or nothing of it."""
+        if self._model.wall - self._loaded < LOAD_EVERY:
+            v.file_fault = f"file '{name}': another one has just been read: load it again"
+            return
+        self._loaded = self._model.wall
         try:
             if len(text) > FILE_MOST:
                 raise BadInput(f"file '{name}': longer than {FILE_MOST} characters: it is no plan of this page")
@@ -118,18 +124,24 @@ class Planning:
     def _advance(self, v: VehicleModel) -> None:
         draft = self.draft(v)
         if v.outlook is None or v.outlook.edits != draft.edits:
-            v.outlook = outlook_of(draft, self._params(v))
+            v.outlook = outlook_of(draft, v.flies)
             self._waits[v.name] = SOON
             self._flights.pop(v.name, None)
         if self._waits[v.name] > 0:
             self._waits[v.name] -= 1
+        elif not v.outlook.is_checked:
+            v.outlook.check(draft, self._params(v))
         else:
             self._fly(v, v.outlook)
 
-    def _params(self, v: VehicleModel) -> AirParams | None:
+    def fault(self, v: VehicleModel) -> str:
+        """Why what is drawn cannot be flown; empty if it can, or if nobody looks at it."""
+        if v.outlook is not None and not v.outlook.is_checked:
+            v.outlook.check(self.draft(v), self._params(v))
+        return v.outlook.fault if v.outlook is not None else ""
+
+    def _params(self, v: VehicleModel) -> AirParams:
         """Of an aircraft; the standard ones where its file's make no sense."""
-        if not v.flies:
-            return None
         try:
             return v.member.params("autopilot_air", AirParams)
         except BadInput:
@@ -140,9 +152,8 @@ class Planning:
         if outlook.fault or outlook.is_flown:
             return
         if v.name not in self._flights:
-            params = self._params(v) or AirParams()
             wind = (v.nav.wind.y, v.nav.wind.x) if v.nav is not None else (0.0, 0.0)
-            self._flights[v.name] = PreviewFlight(plan_items(v.draft.items), params, wind)
+            self._flights[v.name] = PreviewFlight(plan_items(v.draft.items), self._params(v), wind)
         flight = self._flights[v.name]
         outlook.is_flown = flight.advance(STEPS)
         outlook.show(flight.so_far)

@@ -4,7 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from schemas.messages import Fence, FenceZone, RallyPoints, Vector3
+from services.gcs.state.remembered import Remembered
 from uvf.models.mission.fence import ACTIONS, MOST_VERTICES, MOST_ZONES
+from uvf.runtime.messages.fences import fence_fault
 
 Point = tuple[float, float]
 
@@ -80,6 +82,12 @@ class FenceDraft(AreaDraft):
     floor: float | None = None
     ceiling: float | None = None
     action: str = "return"
+    _fault: Remembered[str] = field(default_factory=Remembered)
+
+    @property
+    def fault(self) -> str:
+        """Why it makes no sense; empty if it does."""
+        return self._fault.of((self.edits,), lambda: fence_fault(self.message()))
 
     def take(self, fence: Fence | None) -> None:
         """Begins anew with the fence in force."""

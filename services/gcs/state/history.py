@@ -2,7 +2,7 @@
 
 from bisect import bisect_right
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +19,9 @@ Key = tuple[str, str]
 LENGTH = 600.0  # s
 BUDGET = 256_000_000  # bytes of messages; with more vehicles or larger maps the history is shorter
 STRETCH = 5.0  # s
+CLOCK, OBJECTS = "clock", "objects"
+OF_NOBODY = (CLOCK, OBJECTS)
+"""Kinds that are not of a vehicle."""
 THINNED: Mapping[type[Message], float] = {CompressedImage: 0.5, Grid: 2.0, OctreeMap: 10.0}
 """Least time [s] between two that are kept of these, which are large."""
 EVENTS_MOST = 2000
@@ -99,6 +102,14 @@ class RecentHistory:
             for way in self._ways.values():
                 while way and way[0][0] < begin:
                     way.popleft()
+
+    def only(self, vehicles: Set[str]) -> None:
+        """Lets go of what was heard of other vehicles than these; the moments before still have it."""
+        for known in (self._newest, self._last):
+            for key in [key for key in known if key[1] not in vehicles and key[0] not in OF_NOBODY]:
+                del known[key]
+        for name in [name for name, way in self._ways.items() if not way and name not in vehicles]:
+            del self._ways[name]
 
     def note(self, t: float, lines: Iterable[EventLine]) -> None:
         """Keeps lines of the event log."""

@@ -6,11 +6,11 @@ from google.protobuf.message import Message
 
 from schemas.messages import Clock, Event, ExternalVehicle, NavState, SimObjects
 from services.gcs.state.event_log import EventHistory
-from services.gcs.state.history import Floats, Kept, Key, RecentHistory
+from services.gcs.state.history import OBJECTS, Floats, Kept, Key, RecentHistory
 from services.gcs.state.state import Model
 from uvf.models.scenario import Scenario
 
-CLOCK, EXTERNAL, OBJECTS, TRUTH = "clock", "external", "objects", "truth"
+EXTERNAL, TRUTH = "external", "truth"
 """Kinds of the history that are not kept under the name of a vehicle's field."""
 
 

@@ -6,6 +6,7 @@ from math import hypot
 from typing import Any
 
 from schemas.messages import Mission, MissionItem, Vector3
+from services.gcs.state.remembered import Remembered
 
 MOST_ITEMS = 500
 NEAR = 1e-3  # m: a place that was moved by less has not been moved
@@ -42,6 +43,7 @@ class PlanDraft:
     """Whether somebody has changed it since it was taken from the vehicle."""
     chosen: int = -1
     """The item whose fields are shown."""
+    _differences: Remembered[int] = field(default_factory=Remembered)
 
     def take(self, mission: Mission | None) -> None:
         """Begins anew with what is in force on the vehicle."""
@@ -118,6 +120,9 @@ class PlanDraft:
 
     def differences(self, mission: Mission | None) -> int:
         """How many items are not on the vehicle, or are other ones there."""
+        return self._differences.of((self.edits, mission), lambda: self._count(mission))
+
+    def _count(self, mission: Mission | None) -> int:
         there: Sequence[MissionItem] = mission.items if mission is not None else []
         changed = sum(not same(mine, theirs) for mine, theirs in zip(self.items, there, strict=False))
         return changed + abs(len(self.items) - len(there))

@@ -41,6 +41,20 @@ class PlanOutlook:
     goes_on: bool = False
     """Whether the mission does not end by itself."""
     is_flown: bool = False
+    is_checked: bool = False
+    """Whether it is known if it can be flown."""
+
+    def check(self, draft: PlanDraft, params: AirParams) -> None:
+        """Finds out whether an aircraft can fly it, and what of it otherwise than drawn; takes a while for hundreds of items."""
+        self.is_checked = True
+        try:
+            items = plan_items(draft.items)
+        except ValueError as error:
+            self.fault = str(error)
+            return
+        self.fault = flyable.fault(items, params)
+        if not self.fault:
+            self.advice = tuple(flyable.advice(items, params))[:MOST_ADVICE]
 
     def show(self, flown: MissionPreview) -> None:
         """Takes what has been flown ahead by now."""
@@ -52,20 +66,11 @@ class PlanOutlook:
         self.goes_on = flown.goes_on
 
 
-def outlook_of(draft: PlanDraft, params: AirParams | None) -> PlanOutlook:
-    """What can be told of a draft at once. params: of the aircraft; None for a ground vehicle, which drives from place to place."""
+def outlook_of(draft: PlanDraft, flies: bool) -> PlanOutlook:
+    """What can be told of a draft at once; of a ground vehicle, which drives from place to place, that is all."""
     placed = [item.position for item in draft.items if item.kind in PLACED]
     outlook = PlanOutlook(draft.edits, np.array([(p.x, p.y, p.z) for p in placed]).reshape(-1, 3))
-    if params is None:
+    if not flies:
         outlook.length = float(np.hypot(*np.diff(outlook.places[:, :2], axis=0).T).sum())
-        outlook.is_flown = True
-        return outlook
-    try:
-        items = plan_items(draft.items)
-    except ValueError as error:
-        outlook.fault = str(error)
-        return outlook
-    outlook.fault = flyable.fault(items, params)
-    if not outlook.fault:
-        outlook.advice = tuple(flyable.advice(items, params))[:MOST_ADVICE]
+        outlook.is_flown = outlook.is_checked = True
     return outlook

@@ -34,6 +34,7 @@ SHOWN_AT_FIRST = frozenset(ROOTS) - {"Team maps", "True pose", "Costmaps", "Octr
 VIEWS = ("Scene", "All", "Top", "Follow")
 """From where a scene can be looked at; the first one at first."""
 CONFIRM_WITHIN = 5.0  # s
+SHED_AFTER = 1.0  # s that a page may be behind until it gets no more pictures
 OLD_AFTER = 2.0  # s: a page that shows what is older must not do what cannot be undone
 
 

@@ -135,7 +135,7 @@ class Model:
             setattr(vehicle, what, message)
             vehicle.heard_at[what] = t
             if isinstance(message, NavState if vehicle.flies else Odometry) and what != "truth":
-                vehicle.trends.hear(message)
+                vehicle.trends.hear(t, message)
             if what in ("nav", "pose") and vehicle.place is not None:
                 vehicle.track.add(vehicle.place.position)
             elif what == "scan":

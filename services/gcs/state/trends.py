@@ -4,9 +4,8 @@ from typing import NamedTuple
 
 from schemas.messages import NavState, Odometry
 from services.gcs.state.plot_series import PlotSeries
-from uvf.runtime.messages.convert import seconds
 
-PERIOD = 0.2  # s, simulation
+PERIOD = 0.2  # s, wall
 
 
 class Trend(NamedTuple):
@@ -23,14 +22,18 @@ class Trends:
     def __init__(self, flies: bool) -> None:
         names = (("airspeed", "m/s"), ("altitude", "m")) if flies else (("speed", "m/s"), ("turn rate", "rad/s"))
         self.all = tuple(Trend(name, unit, PlotSeries()) for name, unit in names)
-        self.newest: float | None = None  # s, simulation
+        self._newest = -PERIOD
 
-    def hear(self, message: NavState | Odometry) -> None:
-        """Takes an aircraft's state or a ground vehicle's odometry."""
-        t = seconds(message.timestamp)
-        if self.newest is not None and 0.0 <= t - self.newest < PERIOD - 1e-6:
+    @property
+    def is_heard(self) -> bool:
+        """Whether there are numbers."""
+        return self._newest >= 0.0
+
+    def hear(self, t: float, message: NavState | Odometry) -> None:
+        """Takes an aircraft's state or a ground vehicle's odometry at ``t`` [s, wall]."""
+        if t - self._newest < PERIOD - 1e-6:
             return
-        self.newest = t
+        self._newest = t
         values = (
             (message.airspeed, message.position.z)
             if isinstance(message, NavState)

@@ -32,6 +32,7 @@ from schemas.messages import (
 from services.gcs.state.area_draft import DrawnAreas
 from services.gcs.state.plan_draft import PlanDraft
 from services.gcs.state.plan_outlook import PlanOutlook
+from services.gcs.state.remembered import Remembered
 from services.gcs.state.tracks import VehicleTrack
 from services.gcs.state.trends import Trends
 from uvf.maths.rotations import matrix
@@ -121,6 +122,8 @@ class VehicleModel:
     draft: PlanDraft = field(default_factory=PlanDraft)
     """The mission that is drawn for it here."""
     mapping: MappingState = field(default_factory=MappingState)
+    plan_file: Remembered[str] = field(default_factory=Remembered)
+    """What is drawn for it, as the text of a file."""
     file_fault: str = ""
     """Why the last plan file could not be drawn."""
     areas: DrawnAreas = field(default_factory=DrawnAreas)

@@ -11,7 +11,8 @@ from services.gcs.state.area_draft import Ring
 from services.gcs.state.graph_choice import GraphChoice
 from services.gcs.state.node_graph import NodeGraph
 from services.gcs.state.pointing import Pointed
-from services.gcs.state.session import ROOTS, VIEWS, BrowserSession, hidden_roots
+from services.gcs.state.remembered import Remembered
+from services.gcs.state.session import ROOTS, SHED_AFTER, VIEWS, BrowserSession, hidden_roots
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import DisplayPose, VehicleModel
 from services.gcs.view.controls import check_box, choice
@@ -47,7 +48,6 @@ HELP = Path(__file__).with_name("panels") / "help.html"
 COLOURS: Mapping[str, Colour] = {"/own/way": (150, 160, 175), "/own/drawn": (140, 150, 168), "/own/flown": (232, 74, 214)}
 AREA: Colour = (90, 200, 250)
 FLOWN_PERIOD = 0.5  # s between two drawings of a line that is being flown ahead
-SHED_AFTER = 1.0  # s that a browser may be behind until it gets no more pictures
 FAST = ("time", "run", "plan", "handles", "stop", "bar", "alerts", "commands", "menu", "wheel", "instrument", "picture")
 EVERY = 2
 """Steps between two drawings of these, which tell at once."""
@@ -86,8 +86,8 @@ OF_TAB: Mapping[str, tuple[str, ...]] = {
 """What is drawn of a tab while it is open."""
 
 Draw = Callable[[], Html]
-OnShow = tuple[str, str, GraphChoice, bool]
-"""The vehicle, the tab, what is chosen in the tab Graph, and whether it is the past."""
+OnShow = tuple[str, str, str, GraphChoice, bool]
+"""The vehicle, its camera, the tab, what is chosen in the tab Graph, and whether it is the past."""
 
 
 class Composer:
@@ -107,6 +107,8 @@ class Composer:
         """Page -> what it showed, and the words."""
         self._drawn: dict[tuple[str, str], Html] = {}
         """What has been drawn in this step: (what, of which vehicle); browsers that show the same share it."""
+        self._drawn_before: dict[tuple[str, str], Remembered[Html]] = {}
+        """What is long and seldom another: (what, of which vehicle)."""
         self._previews: dict[int, dict[str, tuple[object, Node]]] = {}
         self._step = 0
 
@@ -118,6 +120,7 @@ class Composer:
         self._fitted = {page: fitted for page, fitted in self._fitted.items() if page in sessions}
         self._past_views = {page: view for page, view in self._past_views.items() if page in self._time_bar.pasts}
         self._previews = {page: made for page, made in self._previews.items() if page in sessions}
+        self._drawn_before = {key: drawn for key, drawn in self._drawn_before.items() if key[1] in self._model.vehicles}
         shown = {page: self._panel(session, t) for page, session in sessions.items()}
         self._step += 1
         return Picture(self._view.nodes(t), self._view.places(), shown)
@@ -131,13 +134,14 @@ class Composer:
     def _panel(self, session: BrowserSession, t: float) -> PagePanel:
         """Drawn as a whole when another vehicle or tab comes on show: never the words about one under the name of another."""
         chosen = self._model.chosen_by(session)
-        on_show = (session.vehicle, session.tab, session.graph, session.past is not None)
+        on_show = (session.vehicle, session.camera, session.tab, session.graph, session.past is not None)
         before, words = self._own.get(session.page, (None, {}))
         new = not words or before != on_show
         draws = self._words(session, chosen, t)
         words = {name: content for name, content in words.items() if name in draws}
         if session.behind(t) > SHED_AFTER:  # a slow browser keeps the picture that it has: words and poses come first
             draws.pop("picture", None)
+            words = {name: content for name, content in words.items() if name != "picture" or not new}
         words |= self._due(draws, new)
         self._own[session.page] = (on_show, words)
         nodes: Mapping[str, Node] = self._preview(session, t)
@@ -180,19 +184,19 @@ class Composer:
                 "fleet": self._once("fleet", v, lambda: fleet.fleet(model, v, t)),
                 "commands": lambda: command_panel.command_panel(model, v, session, t),
                 "menu": lambda: menus.menu(model, session),
-                "hint": self._once("hint", v, lambda: menus.hint(model, v, session)),
+                "hint": lambda: menus.hint(model, v, session),
             }
             in_tabs |= {
                 "plot": lambda: plot.plot_panel(model, v, session),
                 "instrument": self._once("instrument", v, lambda: facts.instrument(v)),
-                "trends": lambda: trends.trend_charts(v.trends, self._sim_time(session) if session.past is not None else None),
+                "trends": lambda: trends.trend_charts(v.trends, t if session.past is None else session.past.t),
                 "wheel": lambda: teleoperation.wheel(v, self._by_hand, session.page),
                 "picture": lambda: camera_panel.picture(v, session, t),
                 "mapping": lambda: map_panel.map_panel(v, session, t),
                 "cameras": lambda: camera_panel.panel(v, session, t),
                 "facts": self._once("facts", v, lambda: facts.facts(v, t)),
-                "plan": lambda: plan.plan_panel(v, session, t),
-                "handles": lambda: plan.handles(v, session.plan_part),
+                "plan": lambda: plan.plan_panel(v, session, t, self._remembered("plan", v)),
+                "handles": lambda: plan.handles(v, session.plan_part, self._remembered("handles", v)),
             }
         shown = always | {name: in_tabs[name] for name in OF_TAB.get(session.tab, ()) if name in in_tabs}
         if session.past is None:
@@ -214,6 +218,9 @@ class Composer:
             "wiring": lambda: graph_drawing.drawing(now(), choice, vehicle),
             "topics": lambda: graph.topics(now(), choice, vehicle, model.graph),
         }
+
+    def _remembered(self, what: str, v: VehicleModel) -> Remembered[Html]:
+        return self._drawn_before.setdefault((what, v.name), Remembered())
 
     def _once(self, what: str, v: VehicleModel | None, draw: Draw) -> Draw:
         key = (what, v.name if v is not None else "")

@@ -39,6 +39,7 @@ class PastView:
             "bar": lambda: status.status_bar(model, session, model.vehicles.get(session.vehicle), t),
             "alerts": lambda: status.alert_lines(model, t),
             "notices": lambda: status.notices(model, t),
+            "table": (lambda: fleet.fleet_table(model, t)) if session.table else _nothing,
             "log": lambda: records.event_log(model.log),
             "menu": _nothing,
             "hint": _nothing,

@@ -113,6 +113,9 @@ class FakeSurveys:
         taken, self.done = self.done, []
         return taken
 
+    def close(self):
+        self.closed = True
+
 
 class Station:
     """The service on a fake page, with scripted vehicles; ``run`` lets simulation and wall time pass alike."""

@@ -1,8 +1,10 @@
 """Fence, rally points and surveys are drawn on the page, compared with what is in force, put into force and kept as files."""
 
 import time
+from concurrent.futures import Future
 from urllib.parse import unquote
 
+import msgspec
 import pytest
 import yaml
 
@@ -25,6 +27,7 @@ from services.gcs.actions.areas import (
 from services.gcs.actions.page import ClickGround, OpenTab, Select
 from services.gcs.actions.plans import PlanLoad
 from services.gcs.orders import area_orders
+from services.gcs.orders.planning import LOAD_EVERY
 from services.gcs.state.area_draft import FenceDraft, RallyDraft
 from services.gcs.state.plan_file import plan_text, read_plan
 from services.gcs.surveying import FieldSurvey, SurveyProcess
@@ -262,3 +265,35 @@ def test_items_of_a_survey_keep_their_trigger_in_a_file():
     text = plan_text([MissionItem(kind=MissionItem.TRIGGER_DISTANCE, distance=7.5)], FenceDraft(), RallyDraft())
     (item,) = read_plan(text, "a.yaml").items
     assert (item.kind, item.distance) == (MissionItem.TRIGGER_DISTANCE, 7.5)
+
+
+def test_what_only_aircraft_have_is_not_drawn_for_a_rover(station):
+    station.press(PlanPart(ME, "Survey"), Select(ME, UGV), seconds=0.3)
+    assert station.model.sessions[ME].plan_part == "mission"
+    draw(station, "survey", vehicle=UGV)
+    station.press(SurveyMake(ME, UGV), FenceActs(ME, UGV, "land"), seconds=0.3)
+    assert not station.surveys.begun and not areas(station, UGV).survey.rings[0].corners
+    assert areas(station, UGV).fence.action == "return"
+
+
+def test_a_field_is_planned_once_at_a_time(station):
+    draw(station, "survey")
+    station.press(*[SurveyMake(ME, UAV)] * 50)
+    assert len(station.surveys.begun) == 1
+
+
+def test_items_that_no_mission_can_hold_are_told():
+    planner = SurveyProcess()
+    planner._jobs[UAV] = Future()
+    planner._jobs[UAV].set_exception(msgspec.ValidationError("Expected `float` <= 1000000.0 - at `$[3].x`"))
+    ((name, items, why),) = planner.made()
+    assert (name, items) == (UAV, []) and "nearer to the world's origin" in why
+    planner.close()
+
+
+def test_plan_files_are_read_one_after_the_other(station):
+    station.press(PlanPart(ME, "Mission"), *[PlanLoad(ME, UAV, f"{n}.yaml", "mission: [{x: 1.0}]") for n in (1, 2)], seconds=0.3)
+    assert len(station.model.vehicles[UAV].draft.items) == 1 and "another one has just been read" in panel(station)
+    station.run(LOAD_EVERY)
+    station.press(PlanLoad(ME, UAV, "3.yaml", "mission: [{x: 1.0}, {x: 2.0}]"), seconds=0.3)
+    assert len(station.model.vehicles[UAV].draft.items) == 2 and "just been read" not in panel(station)

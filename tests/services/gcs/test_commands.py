@@ -82,6 +82,15 @@ def test_a_refusal_is_shown_with_its_reason():
     assert station.model.vehicles[UGV].goal_asked is None
 
 
+def test_what_was_commanded_after_a_goal_is_not_taken_back_when_the_goal_is_refused():
+    station = Station(accept=False)
+    station.script.mode[UGV] = Mode.MODE_MANUAL
+    station.run(0.5)
+    station.press(click(4.0, 3.0), Point(ME, "go"), Command(ME, UGV, "hold"), seconds=0.5)
+    modes = [m.mode for _, m in station.script.asked if isinstance(m, ModeRequest)]
+    assert modes == [Mode.MODE_MISSION, Mode.MODE_HOLD]
+
+
 def test_a_click_opens_a_menu_and_sends_nobody(station):
     station.press(click(4.0, 3.0), seconds=0.4)
     assert station.script.asked == []

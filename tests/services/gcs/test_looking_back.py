@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from services.gcs.actions.page import ClickGround, Command, Layer, OpenTab, Select, StopAll, TakeWheel
+from services.gcs.actions.page import ClickGround, Command, FleetTable, Layer, OpenTab, Select, StopAll, TakeWheel
 from services.gcs.actions.times import ExportMinute, PlayPast, PlayRate, ShowLive, ShowMoment, ShowPast, StepEvent
 from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV
@@ -49,6 +49,14 @@ def test_it_says_so_and_offers_no_command(station):
     assert "PAST" in station.page.now.html["bar"] and "REC" not in station.page.now.html["bar"]
     assert "nothing is commanded" in station.page.now.html["commands"]
     assert "−0:05" in station.page.now.html["time"]
+
+
+def test_the_table_shows_the_same_moment_as_the_cards(station):
+    station.script.armed[UGV] = False
+    station.press(FleetTable(ME, True), seconds=1.0)
+    assert "DISARMED" in station.page.now.html["table"] or "disarmed" in station.page.now.html["table"]
+    station.press(ShowPast(ME, -10.0), seconds=0.5)
+    assert "disarmed" not in station.page.now.html["table"].lower()
 
 
 @pytest.mark.parametrize("action", (Command(ME, UGV, "hold"), TakeWheel(ME, UGV), ClickGround(ME, (2.0, 2.0, 5.0), (0.0, 0.0, -1.0))))

@@ -17,8 +17,7 @@ from services.gcs.actions.page import (
 )
 from services.gcs.orders.by_hand import PATIENCE
 from services.gcs.state.control import ANSWER_WITHIN
-from services.gcs.state.session import ROOTS
-from services.gcs.view.composer import SHED_AFTER
+from services.gcs.state.session import ROOTS, SHED_AFTER
 from tests.services.gcs.fakes import ME, OPERATORS, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, with_eyes
 
@@ -119,6 +118,15 @@ def test_one_drives_while_the_other_one_looks_around(station):
     assert station.script.drives[-1][0] > 0
     assert "data-driver='mine'" in station.page.seen_by(ME).html["wheel"]
     assert "driven from another page" in station.page.seen_by(OTHER).html["wheel"]
+
+
+def test_who_has_lost_control_drives_no_longer(station):
+    station.press(Select(OTHER, UGV), TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0))
+    assert station.script.drives[-1][0] > 0
+    station.model.control.holders[UGV] = OPERATORS[OTHER]
+    station.press(Steer(ME, 1.0, 0.0), seconds=0.2)
+    assert station.script.drives[-1] == (0.0, 0.0)
+    assert station.service._commander.by_hand.held_by(ME) == ""
 
 
 def control(station):

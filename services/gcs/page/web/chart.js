@@ -46,4 +46,7 @@ document.addEventListener('pointermove', event => {
   pointer = within ? [event.clientX, event.clientY] : null;
   read();
 });
+const away = () => { pointer = null; read(); };
+document.addEventListener('pointercancel', away);
+document.documentElement.addEventListener('pointerleave', away);
 setInterval(() => { if (pointer) read(); }, 250);  // the curve goes on below a pointer that rests

@@ -13,7 +13,7 @@ function stick() {
   if (gone || !navigator.getGamepads) return null;
   const pad = [...navigator.getGamepads()].find(pad => pad && pad.buttons[HOLD_BUTTON]?.pressed);
   if (!pad) return null;
-  const [, forward, turn] = pad.axes.map(axis => Math.abs(axis) < DEAD_ZONE ? 0 : -axis);
+  const [, forward = 0, turn = 0] = pad.axes.map(axis => Math.abs(axis) < DEAD_ZONE ? 0 : -axis);
   return [forward, turn];
 }
 

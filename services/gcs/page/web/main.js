@@ -46,6 +46,8 @@ on('open', () => {
   shape(true);
 });
 
+const LONGEST = 54000, TOO_LONG = 48001;  // bytes that a word can carry; characters that the ground station calls too many
+
 const word = element => JSON.parse(element.dataset.do);
 document.addEventListener('click', event => {
   const button = event.target.closest('#gcs [data-do]');
@@ -56,8 +58,8 @@ document.addEventListener('click', event => {
 document.addEventListener('change', async event => {  // a file is read here and told as text
   const field = event.target.closest('#gcs [data-file]'), file = field?.files[0];
   if (!file) return;
-  const text = await file.text();
-  say(...JSON.parse(field.dataset.file), file.name.slice(0, 64), text.slice(0, 48001));
+  const text = await file.text(), long = new TextEncoder().encode(JSON.stringify(JSON.stringify(text))).length > LONGEST;
+  say(...JSON.parse(field.dataset.file), file.name.slice(0, 64), long ? ' '.repeat(TOO_LONG) : text);
   field.value = '';
 });
 document.addEventListener('change', event => {

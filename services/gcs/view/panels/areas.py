@@ -8,7 +8,6 @@ from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button, choice, does
 from services.gcs.view.markup import Html, html, joined
 from uvf.models.mission.fence import ACTIONS
-from uvf.runtime.messages.fences import fence_fault
 
 SHOWN_CORNERS = 24
 
@@ -42,7 +41,7 @@ def _fence(v: VehicleModel, draft: FenceDraft) -> Html:
     empty = html("<p class='g-empty'>Add a zone, then click its corners on the map.</p>") if not draft.rings else html("")
     return joined(
         (
-            _state(v, "fence", same, fence_fault(message), "fence"),
+            _state(v, "fence", same, draft.fault, "fence"),
             empty,
             zones,
             html("<div class='g-two g-gap'>{}</div>", adding),

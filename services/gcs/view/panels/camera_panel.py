@@ -6,7 +6,7 @@ A picture goes to the page only while somebody has it before his eyes: each page
 from base64 import b64encode
 from math import degrees
 
-from services.gcs.state.session import BrowserSession
+from services.gcs.state.session import SHED_AFTER, BrowserSession
 from services.gcs.state.vehicle_model import STALE_AFTER, VehicleModel
 from services.gcs.state.wording import GIMBAL_MODES
 from services.gcs.view.controls import button, choice, does
@@ -42,7 +42,7 @@ def panel(v: VehicleModel, session: BrowserSession, t: float) -> Html:
     keys = joined(button(SHOWN[name], "camera", name, pressed=name == shown) for name in cameras_of(v))
     gimbal = _gimbal(v) if shown == "gimbal" else html("")
     views = html("<div class='g-views' role='group' aria-label='Camera'>{}</div>", keys)
-    return html("<div id='gcs-cameras'><h2 class='g-h'>Camera {}</h2>{}{}</div>", _age(v, shown, t), views, gimbal)
+    return html("<div id='gcs-cameras'><h2 class='g-h'>Camera {}</h2>{}{}</div>", _age(v, session, shown, t), views, gimbal)
 
 
 def picture(v: VehicleModel, session: BrowserSession, t: float) -> Html:
@@ -55,7 +55,9 @@ def picture(v: VehicleModel, session: BrowserSession, t: float) -> Html:
     return html("<img alt='{} of {}' src='data:image/{};base64,{}'>", SHOWN[shown], v.name, kind, b64encode(image.data).decode())
 
 
-def _age(v: VehicleModel, shown: str, t: float) -> Html:
+def _age(v: VehicleModel, session: BrowserSession, shown: str, t: float) -> Html:
+    if session.past is None and session.behind(t) > SHED_AFTER:
+        return html("<span class='g-warn'>⚠ no pictures: this page is {:.0f} s behind</span>", session.behind(t))
     at = v.heard_at.get(shown)
     if at is None:
         return html("<span class='g-idle'>no picture yet</span>")

@@ -33,7 +33,7 @@ class ChartFrame(NamedTuple):
 
     def box(self) -> Html:
         """Attributes of the SVG element: its size, and what the page's script reads numbers under the pointer by."""
-        about = " ".join(f"{number:.6g}" for number in (LEFT, WIDTH - RIGHT, TOP, self.height - BOTTOM, self.low, self.high))
+        about = " ".join(repr(float(number)) for number in (LEFT, WIDTH - RIGHT, TOP, self.height - BOTTOM, self.low, self.high))
         return html(
             "viewBox='0 0 {:.0f} {:.0f}' width='100%' data-begin='{:.3f}' data-end='{:.3f}' data-frame='{}'",
             WIDTH,
@@ -43,14 +43,15 @@ class ChartFrame(NamedTuple):
             about,
         )
 
-    def grid(self) -> Html:
-        """Lines and numbers of both axes."""
+    def grid(self, since: float) -> Html:
+        """Lines and numbers of both axes; none before ``since`` along the lower one."""
         values = round_ticks(self.low, self.high, 5)
-        digits = max(0, -int(np.floor(np.log10(values[1] - values[0]) + 1e-9))) if len(values) > 1 else 2
+        apart = values[1] - values[0] if len(values) > 1 else 0.0
+        digits = max(0, -int(np.floor(np.log10(apart) + 1e-9))) if apart > 0 else 2
         rows = joined(self._row(value, digits) for value in values)
         columns = joined(
             html("<path d='M{:.1f} {}V{}'/><text x='{:.1f}' y='{}' class='g-mid'>{:g}</text>", *self._column(value))
-            for value in round_ticks(max(self.begin, 0.0), self.end, 6)
+            for value in round_ticks(max(self.begin, since), self.end, 6)
         )
         return html("<g class='g-grid'>{}{}</g>", rows, columns)
 
@@ -66,6 +67,12 @@ class ChartFrame(NamedTuple):
     def unit(self, name: str) -> Html:
         """The unit of its numbers."""
         return html("<text x='{}' y='{}' class='g-unit'>{}</text>", LEFT + 4, TOP + 10, name)
+
+
+def room(low: float, high: float, least: float) -> tuple[float, float]:
+    """The range of an axis for numbers from ``low`` to ``high``: with a little room, and never flat or finer than numbers are kept."""
+    half = max(0.58 * (high - low), least / 2, 1e-9 * max(abs(low), abs(high)))
+    return (low + high) / 2 - half, (low + high) / 2 + half
 
 
 def curve(frame: ChartFrame, colour: int, name: str, t: Floats, values: Floats) -> Html:

@@ -11,6 +11,7 @@ from services.gcs.state.area_draft import PARTS
 from services.gcs.state.plan_draft import PLACED, PlanDraft, kind_name
 from services.gcs.state.plan_file import plan_text
 from services.gcs.state.plan_outlook import PlanOutlook
+from services.gcs.state.remembered import Remembered
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button, does
@@ -28,8 +29,8 @@ OF_KIND: dict[int, tuple[tuple[str, str, str], ...]] = {
 """Fields of an item beside its place: name, label, unit."""
 
 
-def plan_panel(v: VehicleModel, session: BrowserSession, t: float) -> Html:
-    """The panel at ``t`` [s, wall] as one page sees it."""
+def plan_panel(v: VehicleModel, session: BrowserSession, t: float, table: Remembered[Html]) -> Html:
+    """The panel at ``t`` [s, wall] as one page sees it. table: of the vehicle's items, as it was drawn last."""
     if session.plan_part != "mission":
         return html(
             "<h2 class='g-h'>{} of {}</h2>{}{}",
@@ -46,7 +47,7 @@ def plan_panel(v: VehicleModel, session: BrowserSession, t: float) -> Html:
         html("<span>{}</span>", _total(v, draft, outlook)),
         part_choice(v, "mission"),
         _state(v, draft, session, outlook, t),
-        _table(v, draft),
+        table.of(_drawn_from(v), lambda: _table(v, draft)),
         _adding(v),
         _remarks(outlook),
         profile(outlook) if v.flies else html(""),
@@ -56,8 +57,10 @@ def plan_panel(v: VehicleModel, session: BrowserSession, t: float) -> Html:
 
 def _files(v: VehicleModel) -> Html:
     """To keep what is drawn, and to draw what was kept; the page's script reads and writes the files."""
-    text = plan_text(v.draft.items, v.areas.fence, v.areas.rally)
-    save = html("<a class='g-btn' download='{}-plan.yaml' href='data:application/yaml;charset=utf-8,{}'>Save plan</a>", v.name, quote(text))
+    fence, rally = v.areas.fence, v.areas.rally
+    made_of = (v.draft.edits, fence.edits, rally.edits, rally.height)
+    text = v.plan_file.of(made_of, lambda: quote(plan_text(v.draft.items, fence, rally)))
+    save = html("<a class='g-btn' download='{}-plan.yaml' href='data:application/yaml;charset=utf-8,{}'>Save plan</a>", v.name, text)
     about = html("data-file='{}' aria-label='Load a plan for {}'", json.dumps(["plan-load", v.name]), v.name)
     load = html("<label class='g-btn g-file'>Load plan<input type='file' accept='.yaml,.yml' {}></label>", about)
     fault = html("<p class='g-order g-bad' role='alert'>✖ {}</p>", v.file_fault) if v.file_fault else html("")
@@ -93,6 +96,11 @@ def _state(v: VehicleModel, draft: PlanDraft, session: BrowserSession, outlook: 
     return html(
         "<div class='g-order g-warn'>{}</div><div class='g-plan-do'>{}<div class='g-row'>{}{}</div></div>", count, upload, back, clear
     )
+
+
+def _drawn_from(v: VehicleModel) -> tuple[object, ...]:
+    current = (v.progress.current, v.progress.total > 0) if v.progress is not None else (-1, False)
+    return (v.draft.edits, v.draft.chosen, v.mission, *current)
 
 
 def _table(v: VehicleModel, draft: PlanDraft) -> Html:
@@ -163,10 +171,14 @@ def _remarks(outlook: PlanOutlook) -> Html:
     return joined((fault, *(html("<p class='g-why'>⚠ {}: {}</p>", what, why) for what, why in outlook.advice)))
 
 
-def handles(v: VehicleModel, part: str) -> Html:
-    """The places of what is drawn over the scene, to be moved with the pointer or with the arrow keys."""
-    if part != "mission":
-        return area_handles(v, part)
+def handles(v: VehicleModel, part: str, drawn: Remembered[Html]) -> Html:
+    """The places of what is drawn over the scene, to be moved with the pointer or with the arrow keys. drawn: of its items, last."""
+    if part == "mission":
+        return drawn.of(_drawn_from(v), lambda: _handles(v))
+    return area_handles(v, part)
+
+
+def _handles(v: VehicleModel) -> Html:
     placed = [(i, item.position) for i, item in enumerate(v.draft.items) if item.kind in PLACED]
     return joined(
         html(

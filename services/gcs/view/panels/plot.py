@@ -14,7 +14,7 @@ from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.chart import BOTTOM, TOP, ChartFrame, curve
+from services.gcs.view.panels.chart import BOTTOM, TOP, ChartFrame, curve, room
 from uvf.maths.decimation import min_max
 
 Floats = NDArray[np.float64]
@@ -69,7 +69,7 @@ def _chart(model: Model, choice: PlotChoice, unit: str, members: Sequence[int], 
         label,
         unit,
         frame.box(),
-        frame.grid(),
+        frame.grid(0.0),
         _events(frame, model),
         lines,
         frame.unit(unit),
@@ -90,8 +90,7 @@ def _range(curves: Sequence[Floats]) -> tuple[float, float]:
     if len(known) == 0:
         return -1.0, 1.0
     low, high = float(known.min()), float(known.max())
-    room = max(0.08 * (high - low), FLATTEST, 0.02 * abs(high) if high == low else 0.0)
-    return low - room, high + room
+    return room(low, high, max(0.04 * abs(high), FLATTEST) if high == low else FLATTEST)
 
 
 def _events(frame: ChartFrame, model: Model) -> Html:
@@ -127,7 +126,8 @@ def _chooser(model: Model, v: VehicleModel, choice: PlotChoice) -> Html:
     """A search through all numbers of the vehicle on show and of the system; or their topics, and the numbers of the chosen one."""
     keys = sorted(topic.at(v.name) for topic in TOPICS.values() if "<source>" not in topic.key)
     search = html(
-        "<input type='search' data-key='plot-find' aria-label='Search numbers' placeholder='search, as in: airspeed' value='{}' {}>",
+        "<input type='search' data-key='plot-find' aria-label='Search numbers' placeholder='search, as in: airspeed' maxlength='64' "
+        "value='{}' {}>",
         choice.text,
         does("plot-find"),
     )

@@ -28,7 +28,7 @@ def profile(outlook: PlanOutlook) -> Html:
         "as flown ahead" if outlook.is_flown else "being flown ahead",
         label,
         frame.box(),
-        frame.grid(),
+        frame.grid(0.0),
         path,
         marks,
     )

@@ -21,16 +21,10 @@ from uvf.models.shapes.mesh_parts import MeshPart
 
 Floats = NDArray[np.float64]
 
-ROUTE: Colour = (232, 74, 214)
-SCAN: Colour = (255, 92, 92)
-ASKED: Colour = (250, 190, 60)
 GHOST: Colour = (190, 200, 215)
 SHOWN_SIZE, MOST_SCALE = 8.5, 4.0  # m
 """Small aircraft are drawn larger than they are, to be seen from where their whole circuit is."""
-MAP_PERIOD = 1.0  # s between two pictures of the map
-OCTREE_PERIOD = 3.0  # s between two pictures of an octree
 LEVEL = np.array((1.0, 0.0, 0.0, 0.0))
-UP = 0.02  # m above the floor, so that what lies on it is seen
 
 
 class SceneView:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from schemas.messages import CompressedImage, Event, NavStatus
+from schemas.messages import Clock, CompressedImage, Event, NavState, NavStatus
 from services.gcs.state.event_log import EventLine
 from services.gcs.state.history import STRETCH, RecentHistory
 
@@ -22,6 +22,17 @@ def heard(seconds, **bounds):
 def said(history, t):
     found = history.at(t)
     return {name: kept.message.reason for (_, name), kept in found.items()}
+
+
+def test_vehicles_that_are_gone_are_let_go_of():
+    history = RecentHistory()
+    for n in range(400):
+        history.hear(float(n), "nav", {f"stranger{n}": NavState(airspeed=1.0), "milvus": NavState(airspeed=float(n))})
+        history.hear(float(n), "clock", {"": Clock(tick=n)})
+        history.go(float(n), f"stranger{n}", np.zeros(3), 1.0)
+        history.only({f"stranger{n}", "milvus"})
+    assert len(history._newest) == len(history._last) == 3
+    assert ("nav", "stranger100") in history.at(100.0) and ("nav", "stranger100") not in history.at(399.0)
 
 
 def test_each_moment_gives_the_newest_message_of_then():

@@ -9,6 +9,7 @@ from schemas import topics
 from schemas.messages import GimbalCommand, JointState, JointStates
 from services.gcs.actions.page import AimGimbal, GimbalMode, Looking, OpenTab, Select, ShowCamera
 from services.gcs.page.words import action_in
+from services.gcs.state.session import SHED_AFTER
 from services.gcs.view.panels.camera_panel import SEEN_FOR
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, with_eyes
@@ -97,3 +98,15 @@ def test_the_pages_own_words():
     assert action_in('[1, "gimbal", "milvus", "pan", 0.25]', ME) == AimGimbal(ME, UAV, "pan", 0.25)
     assert action_in('[1, "gimbal", "milvus", "roll", 0.25]', ME) is None
     assert action_in('[1, "looks", "another"]', ME) is None
+
+
+def test_no_picture_of_another_vehicle_stands_under_the_name_of_this_one_on_a_slow_page(station):
+    station.press(PAGE, seconds=0.2)
+    station.page.asleep = True
+    station.run(SHED_AFTER + 0.5)
+    assert shows(station, b"air gimbal")
+    assert "no pictures: this page is 1 s behind" in station.page.now.html["cameras"]
+    station.press(ShowCamera(ME, "chase"), seconds=0.4)
+    assert "picture" not in station.page.now.html
+    station.press(Select(ME, UGV), seconds=0.4)
+    assert "picture" not in station.page.now.html
