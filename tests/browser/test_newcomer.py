@@ -94,10 +94,12 @@ def test_an_aircraft_is_armed_takes_off_flies_a_drawn_mission_and_returns(before
     if not state().armed:
         somebody.press("Arm milvus")
         somebody.press("Confirm")
+        assert until(somebody.page, lambda: state().armed, 20.0)
     somebody.press("Mission", exact=True)
+    assert until(somebody.page, lambda: state().mode == Mode.MODE_MISSION, 20.0), f"{state()}"
     assert until(somebody.page, lambda: height() > 30.0, 90.0), f"it is at {height()} m"
     passed = lambda: client.read("milvus", topics.PROGRESS).current  # noqa: E731
-    assert until(somebody.page, lambda: passed() >= 2, 90.0), f"it is at item {passed()}"
+    assert until(somebody.page, lambda: passed() >= 2, 90.0), f"it is at item {passed()}: {state()}"
     somebody.press("Return")
     assert until(somebody.page, lambda: state().mode == Mode.MODE_RETURN, 20.0)
 
