@@ -6,7 +6,6 @@ Real processes on a real router: the service as ``uvf up`` starts it, one that s
 
 import asyncio
 import os
-import socket
 import subprocess
 import sys
 import tempfile
@@ -25,6 +24,7 @@ import psutil
 from benchmarks.gcs.feeder import AIRCRAFT, ROVERS, mission
 from benchmarks.gcs.page_client import PageClient
 from launch.commands.bench import Figures
+from tests.services.gcs.wire import free_port
 from uvf.models.scenario import ROOT
 
 PATIENCE = 60.0  # s
@@ -51,16 +51,10 @@ class Station:
         return float(self.process.memory_info().rss / 1e6)
 
 
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
 @contextmanager
 def ten_vehicles() -> Iterator[Station]:
     """A router, a ground station, and ten vehicles that move."""
-    endpoint, port = f"tcp/127.0.0.1:{_free_port()}", _free_port()
+    endpoint, port = f"tcp/127.0.0.1:{free_port()}", free_port()
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "ten.yaml"
         file.write_text(mission())

@@ -12,22 +12,10 @@ from typing import Any
 import msgspec
 import viser
 import websockets
-import zstandard
 
 from benchmarks.gcs.feeder import Circle
+from tests.services.gcs.wire import CAMERA, decode
 
-CAMERA = {
-    "type": "ViewerCameraMessage",
-    "wxyz": (1.0, 0.0, 0.0, 0.0),
-    "position": (0.0, 0.0, 300.0),
-    "image_height": 900,
-    "image_width": 900,
-    "fov": 1.0,
-    "near": 0.01,
-    "far": 20000.0,
-    "look_at": (0.0, 0.0, 0.0),
-    "up_direction": (0.0, 0.0, 1.0),
-}
 BEAT = re.compile(r"data-beat='([0-9.]+)'")
 BRIDGE = re.compile(r"data-bridge='([^']+)'")
 
@@ -65,7 +53,7 @@ class PageClient:
                 batch = await socket.recv()
                 assert isinstance(batch, bytes)
                 self.received += len(batch)
-                for message in _decoded(batch):
+                for message in decode(batch):
                     await self._take(socket, message)
                     self.joined = self.joined or (time.monotonic() - began if message["type"] == "ReplayDoneMessage" else 0.0)
                 if self._bridge and now - looked > 1.0:
@@ -96,10 +84,3 @@ class PageClient:
         self._count += 1
         said = {"type": "GuiUpdateMessage", "uuid": self._bridge, "updates": {"value": json.dumps([self._count, *word])}}
         await socket.send(msgspec.msgpack.encode(said))
-
-
-def _decoded(batch: bytes) -> list[dict[str, Any]]:
-    size, packed = int.from_bytes(batch[:8], "little"), int.from_bytes(batch[8:16], "little")
-    plain = zstandard.ZstdDecompressor().decompress(batch[16 : 16 + packed], max_output_size=size)
-    found: list[dict[str, Any]] = msgspec.msgpack.decode(plain)["messages"]
-    return found

@@ -60,8 +60,10 @@ class ViserScene:
         moved = float(np.abs(place.position - old.position).max()) > MOVED
         turned = float(np.abs(place.wxyz - old.wxyz).max()) > TURNED
         if moved or turned:
-            _move(handle, place.position)
-            _turn(handle, place.wxyz)
+            if not np.array_equal(place.position, old.position):
+                _move(handle, place.position)
+            if not np.array_equal(place.wxyz, old.wxyz):
+                _turn(handle, place.wxyz)
             self._frames[name] = (handle, place)
 
     def _add(self, name: str, node: Node) -> Any:
@@ -140,7 +142,8 @@ class ViserScene:
     def _change_text(self, node: TextNode, old: TextNode, handle: Any) -> None:
         if node.text != old.text:
             handle.text = node.text
-        _move(handle, np.asarray(node.position))
+        if node.position != old.position:
+            _move(handle, np.asarray(node.position))
 
 
 def _move(handle: Any, position: Floats) -> None:

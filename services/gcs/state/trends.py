@@ -9,7 +9,7 @@ PERIOD = 0.2  # s, wall
 
 
 class Trend(NamedTuple):
-    """One number over time. name: with its unit, as it is shown."""
+    """One number over time, in its ``unit``."""
 
     name: str
     unit: str

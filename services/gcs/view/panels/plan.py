@@ -58,7 +58,7 @@ def plan_panel(v: VehicleModel, session: BrowserSession, t: float, table: Rememb
 def _files(v: VehicleModel) -> Html:
     """To keep what is drawn, and to draw what was kept; the page's script reads and writes the files."""
     fence, rally = v.areas.fence, v.areas.rally
-    made_of = (v.draft.edits, fence.edits, rally.edits, rally.height)
+    made_of = (v.draft.edits, fence.edits, rally.edits)
     text = v.plan_file.of(made_of, lambda: quote(plan_text(v.draft.items, fence, rally)))
     save = html("<a class='g-btn' download='{}-plan.yaml' href='data:application/yaml;charset=utf-8,{}'>Save plan</a>", v.name, text)
     about = html("data-file='{}' aria-label='Load a plan for {}'", json.dumps(["plan-load", v.name]), v.name)

@@ -138,9 +138,9 @@ def _chooser(model: Model, v: VehicleModel, choice: PlotChoice) -> Html:
 def _found(model: Model, keys: Sequence[str], text: str) -> Html:
     """The numbers whose topic, name and unit hold every word of a text."""
     words = text.lower().split()
-    every = (SeriesName(key, one.path) for key in keys for one in model.plots.fields_of(key))
-    found = [name for name in every if all(word in f"{name} {unit_of(name)}".lower() for word in words)]
-    rows = joined(_adds(name, str(name)) for name in found[:MOST_FOUND])
+    every = ((SeriesName(key, one.path), one.unit) for key in keys for one in model.plots.fields_of(key))
+    found = [(name, unit) for name, unit in every if all(word in f"{name} {unit}".lower() for word in words)]
+    rows = joined(_adds(name, str(name), unit) for name, unit in found[:MOST_FOUND])
     more = html("<p class='g-why'>and {} more: write more of the name</p>", len(found) - MOST_FOUND) if len(found) > MOST_FOUND else ""
     return html("<div class='g-fields'>{}{}</div>", rows if found else html("<p class='g-empty'>No number is called so.</p>"), more)
 
@@ -151,11 +151,10 @@ def _listed(model: Model, keys: Sequence[str], choice: PlotChoice) -> Html:
         for key in ("", *keys)
     )
     numbers = model.plots.fields_of(choice.topic) if choice.topic else ()
-    fields = joined(_adds(SeriesName(choice.topic, one.path), one.path) for one in numbers)
+    fields = joined(_adds(SeriesName(choice.topic, one.path), one.path, one.unit) for one in numbers)
     select = html("<select {} aria-label='Topic to plot from'>{}</select>", does("plot-topic"), options)
     return html("{}<div class='g-fields'>{}</div>", select, fields)
 
 
-def _adds(name: SeriesName, text: str) -> Html:
-    unit = unit_of(name)
+def _adds(name: SeriesName, text: str, unit: str) -> Html:
     return button(f"+ {text}{f' [{unit}]' if unit else ''}", "plot-add", name.key, name.path, style="g-link")
