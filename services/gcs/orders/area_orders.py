@@ -23,8 +23,8 @@ from services.gcs.actions.areas import (
 from services.gcs.orders.offers import SOURCE
 from services.gcs.orders.orders import OrderBook
 from services.gcs.orders.outbox import Outbox
-from services.gcs.state.area_draft import AreaDraft, FenceDraft, SurveyDraft
-from services.gcs.state.plan_draft import MOST_ITEMS
+from services.gcs.state.plans.area_draft import AreaDraft, FenceDraft, SurveyDraft
+from services.gcs.state.plans.plan_draft import MOST_ITEMS
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel

@@ -28,8 +28,8 @@ from services.gcs.actions.page import (
 from services.gcs.actions.plots import OfPlot
 from services.gcs.orders.by_hand import ManualDriving
 from services.gcs.orders.plotting import plot
-from services.gcs.state.area_draft import PARTS
-from services.gcs.state.graph_choice import GraphChoice
+from services.gcs.state.graph.graph_choice import GraphChoice
+from services.gcs.state.plans.area_draft import PARTS
 from services.gcs.state.session import ROOTS, VIEWS, BrowserSession
 from services.gcs.state.state import Model
 from uvf.runtime.contract.service import Answer

@@ -15,9 +15,9 @@ from services.gcs.actions.plans import (
     PlanTake,
 )
 from services.gcs.orders.offers import SOURCE
-from services.gcs.state.plan_draft import PLACED, PlanDraft
-from services.gcs.state.plan_file import read_plan, take_areas
-from services.gcs.state.plan_outlook import PlanOutlook, outlook_of
+from services.gcs.state.plans.plan_draft import PLACED, PlanDraft
+from services.gcs.state.plans.plan_file import read_plan, take_areas
+from services.gcs.state.plans.plan_outlook import PlanOutlook, outlook_of
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
 from uvf.guidance.mission_preview import PreviewFlight

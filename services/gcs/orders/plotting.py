@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 from services.gcs.actions.plots import OfPlot, PlotAdd, PlotFind, PlotHold, PlotPreset, PlotRemove, PlotTopic, PlotWindow
-from services.gcs.state.plot_choice import WINDOWS, PlotChoice, presets_of
-from services.gcs.state.plot_series import SeriesName
+from services.gcs.state.plots.plot_choice import WINDOWS, PlotChoice, presets_of
+from services.gcs.state.plots.plot_series import SeriesName
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model
 from uvf.runtime.messages.topic_lookup import topic_of
@@ -33,7 +33,7 @@ def plot(model: Model, session: BrowserSession, action: OfPlot) -> None:
 def _preset(model: Model, session: BrowserSession, name: str) -> PlotChoice | None:
     """The numbers of a preset for the vehicle on show, in place of those before."""
     vehicle = model.vehicles.get(session.vehicle)
-    wanted = presets_of(vehicle).get(name) if vehicle is not None else None
+    wanted = presets_of(vehicle.flies).get(name) if vehicle is not None else None
     if vehicle is None or wanted is None:
         return None
     series = tuple(SeriesName(topic.at(vehicle.name), path) for topic, path in wanted)

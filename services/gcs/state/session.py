@@ -4,9 +4,9 @@ from collections.abc import Set
 from dataclasses import dataclass, field
 from math import inf
 
-from services.gcs.state.graph_choice import GraphChoice
+from services.gcs.state.graph.graph_choice import GraphChoice
 from services.gcs.state.past_choice import PastChoice
-from services.gcs.state.plot_choice import PlotChoice
+from services.gcs.state.plots.plot_choice import PlotChoice
 from services.gcs.state.pointing import Pointed
 
 ROOTS = {

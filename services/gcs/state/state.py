@@ -20,8 +20,8 @@ from schemas.topics import SYSTEM
 from services.gcs.state.control import ControlBook
 from services.gcs.state.event_log import EventHistory, EventLine
 from services.gcs.state.external_vehicles import FORGOTTEN_AFTER, ExternalVehicles
-from services.gcs.state.graph_book import GraphBook
-from services.gcs.state.plot_series import PlotBook
+from services.gcs.state.graph.graph_book import GraphBook
+from services.gcs.state.plots.plot_series import PlotBook
 from services.gcs.state.process_book import ProcessBook
 from services.gcs.state.refusals import PageRefusals
 from services.gcs.state.session import SHOWN_AT_FIRST, BrowserSession

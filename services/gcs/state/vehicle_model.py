@@ -29,12 +29,12 @@ from schemas.messages import (
     RallyPoints,
     VehicleStatus,
 )
-from services.gcs.state.area_draft import DrawnAreas
-from services.gcs.state.plan_draft import PlanDraft
-from services.gcs.state.plan_outlook import PlanOutlook
+from services.gcs.state.plans.area_draft import DrawnAreas
+from services.gcs.state.plans.plan_draft import PlanDraft
+from services.gcs.state.plans.plan_outlook import PlanOutlook
+from services.gcs.state.plots.trends import Trends
 from services.gcs.state.remembered import Remembered
 from services.gcs.state.tracks import VehicleTrack
-from services.gcs.state.trends import Trends
 from uvf.maths.rotations import matrix
 from uvf.maths.se3 import apply
 from uvf.models.scenario import MissionVehicle

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.gcs.orders.by_hand import ManualDriving
-from services.gcs.state.area_draft import Ring
-from services.gcs.state.graph_choice import GraphChoice
-from services.gcs.state.node_graph import NodeGraph
+from services.gcs.state.graph.graph_choice import GraphChoice
+from services.gcs.state.graph.node_graph import NodeGraph
+from services.gcs.state.plans.area_draft import Ring
 from services.gcs.state.pointing import Pointed
 from services.gcs.state.remembered import Remembered
 from services.gcs.state.session import ROOTS, SHED_AFTER, VIEWS, BrowserSession, hidden_roots

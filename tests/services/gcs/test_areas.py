@@ -28,8 +28,8 @@ from services.gcs.actions.page import ClickGround, OpenTab, Select
 from services.gcs.actions.plans import PlanLoad
 from services.gcs.orders import area_orders
 from services.gcs.orders.planning import LOAD_EVERY
-from services.gcs.state.area_draft import FenceDraft, RallyDraft
-from services.gcs.state.plan_file import plan_text, read_plan
+from services.gcs.state.plans.area_draft import FenceDraft, RallyDraft
+from services.gcs.state.plans.plan_file import plan_text, read_plan
 from services.gcs.surveying import FieldSurvey, SurveyProcess
 from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV

@@ -7,7 +7,7 @@ from schemas import topics
 from schemas.messages import MissionItem, MissionRequest, SetCurrentRequest
 from services.gcs.actions.page import OpenTab, Select
 from services.gcs.actions.plans import PlanAdd, PlanChoose, PlanClear, PlanMove, PlanRemove, PlanSet, PlanShift
-from services.gcs.state.plan_draft import MOST_ITEMS
+from services.gcs.state.plans.plan_draft import MOST_ITEMS
 from tests.services.gcs.fakes import ME, OTHER, Station, click
 from tests.services.gcs.scripted import LEGS, UAV, UGV
 

@@ -3,7 +3,7 @@
 import json
 
 from schemas.messages import Fence, RallyPoints
-from services.gcs.state.area_draft import PARTS, AreaDraft, FenceDraft, RallyDraft, Ring, SurveyDraft
+from services.gcs.state.plans.area_draft import PARTS, AreaDraft, FenceDraft, RallyDraft, Ring, SurveyDraft
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button, choice, does
 from services.gcs.view.markup import Html, html, joined

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 
 from schemas.topics import SYSTEM
-from services.gcs.state.graph_book import GraphBook
-from services.gcs.state.graph_choice import GraphChoice
-from services.gcs.state.node_graph import NodeGraph, ServiceState, TopicState
-from services.gcs.state.topic_verdicts import Grade
-from services.gcs.state.traffic import short
+from services.gcs.state.graph.graph_book import GraphBook
+from services.gcs.state.graph.graph_choice import GraphChoice
+from services.gcs.state.graph.node_graph import NodeGraph, ServiceState, TopicState
+from services.gcs.state.graph.topic_verdicts import Grade
+from services.gcs.state.graph.traffic import short
 from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
 from services.gcs.view.panels.message_text import message_text

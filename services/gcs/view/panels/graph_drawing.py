@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from math import hypot
 
 from schemas.topics import SYSTEM
-from services.gcs.state.graph_choice import GraphChoice
-from services.gcs.state.node_graph import NodeGraph, ServiceState, TopicState
-from services.gcs.state.topic_verdicts import Grade
+from services.gcs.state.graph.graph_choice import GraphChoice
+from services.gcs.state.graph.node_graph import NodeGraph, ServiceState, TopicState
+from services.gcs.state.graph.topic_verdicts import Grade
 from services.gcs.view.controls import does
 from services.gcs.view.markup import Html, html, joined
 from uvf.maths.graph_layers import arranged, layers

@@ -3,7 +3,7 @@
 from google.protobuf.message import DecodeError
 from google.protobuf.text_format import MessageToString
 
-from services.gcs.state.traffic import SHOWN_MOST, KeyTraffic
+from services.gcs.state.graph.traffic import SHOWN_MOST, KeyTraffic
 from uvf.runtime.messages.topic_lookup import topic_of
 from uvf.runtime.messages.validation import legible
 

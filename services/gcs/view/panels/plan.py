@@ -7,10 +7,10 @@ from urllib.parse import quote
 import numpy as np
 
 from schemas.messages import MissionItem
-from services.gcs.state.area_draft import PARTS
-from services.gcs.state.plan_draft import PLACED, PlanDraft, kind_name
-from services.gcs.state.plan_file import plan_text
-from services.gcs.state.plan_outlook import PlanOutlook
+from services.gcs.state.plans.area_draft import PARTS
+from services.gcs.state.plans.plan_draft import PLACED, PlanDraft, kind_name
+from services.gcs.state.plans.plan_file import plan_text
+from services.gcs.state.plans.plan_outlook import PlanOutlook
 from services.gcs.state.remembered import Remembered
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.vehicle_model import VehicleModel

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from schemas.messages import Event
 from schemas.topics import TOPICS
-from services.gcs.state.plot_choice import WINDOWS, PlotChoice, presets_of
-from services.gcs.state.plot_series import PlotSeries, SeriesName, unit_of
+from services.gcs.state.plots.plot_choice import WINDOWS, PlotChoice, presets_of
+from services.gcs.state.plots.plot_series import PlotSeries, SeriesName, unit_of
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
@@ -33,7 +33,7 @@ def plot_panel(model: Model, v: VehicleModel, session: BrowserSession) -> Html:
 
 
 def _presets(v: VehicleModel) -> Html:
-    keys = joined(button(name, "plot-preset", name, style="g-btn g-small") for name in presets_of(v))
+    keys = joined(button(name, "plot-preset", name, style="g-btn g-small") for name in presets_of(v.flies))
     return html("<h2 class='g-h'>Plots of {}</h2><div class='g-row g-wrap'>{}</div>", v.name, keys)
 
 

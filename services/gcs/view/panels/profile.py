@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from services.gcs.state.plan_outlook import PlanOutlook
+from services.gcs.state.plans.plan_outlook import PlanOutlook
 from services.gcs.view.markup import Html, html, joined
 from services.gcs.view.panels.chart import ChartFrame
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from services.gcs.state.trends import Trend, Trends
+from services.gcs.state.plots.trends import Trend, Trends
 from services.gcs.view.markup import Html, html, joined
 from services.gcs.view.panels.chart import ChartFrame, curve, room
 

@@ -9,10 +9,10 @@ from schemas import topics
 from schemas.messages import LaserScan, PoseInFrame, Vector3
 from services.gcs.actions.page import FilterTopics, Join, Leave, OpenTab, ScopeTopics, ShowService, ShowTopic
 from services.gcs.page.words import action_in
-from services.gcs.state.graph_choice import GraphChoice
-from services.gcs.state.node_graph import NodeGraph, ServiceState, TopicState
-from services.gcs.state.topic_verdicts import Grade
-from services.gcs.state.traffic import SHOWN_MOST, KeyTraffic
+from services.gcs.state.graph.graph_choice import GraphChoice
+from services.gcs.state.graph.node_graph import NodeGraph, ServiceState, TopicState
+from services.gcs.state.graph.topic_verdicts import Grade
+from services.gcs.state.graph.traffic import SHOWN_MOST, KeyTraffic
 from services.gcs.view.panels.graph import listed, summary
 from services.gcs.view.panels.graph_drawing import MOST_BOXES, WIDTH, drawing
 from services.gcs.view.panels.message_text import MOST_LINES, message_text

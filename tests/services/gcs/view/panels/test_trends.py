@@ -6,7 +6,7 @@ import pytest
 
 from services.gcs.actions.page import OpenTab, Select
 from services.gcs.actions.times import ShowPast
-from services.gcs.state.trends import PERIOD
+from services.gcs.state.plots.trends import PERIOD
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 

@@ -7,7 +7,7 @@ import numpy as np
 from google.protobuf.message import Message
 from numpy.typing import NDArray
 
-from services.gcs.state.plot_fields import PlotField, plot_fields, repeated_fields, value_at
+from services.gcs.state.plots.plot_fields import PlotField, plot_fields, repeated_fields, value_at
 from services.gcs.watch import WatchedMessage
 from uvf.runtime.bus.wire import Malformed, decode
 from uvf.runtime.messages.topic_lookup import topic_of

@@ -5,8 +5,8 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Imu, JointState, JointStates, NavState, Quaternion, Vector3, VehicleStatus
-from services.gcs.state.plot_fields import plot_fields, repeated_fields, value_at
-from services.gcs.state.plot_series import GAP, LONGEST, PlotBook, PlotSeries, SeriesName, unit_of
+from services.gcs.state.plots.plot_fields import plot_fields, repeated_fields, value_at
+from services.gcs.state.plots.plot_series import GAP, LONGEST, PlotBook, PlotSeries, SeriesName, unit_of
 from services.gcs.watch import WatchedMessage
 from uvf.maths.rotations import from_euler
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from services.gcs.state.plan_draft import PLACED, PlanDraft
+from services.gcs.state.plans.plan_draft import PLACED, PlanDraft
 from uvf.guidance import flyable
 from uvf.guidance.mission_preview import MissionPreview, places_passed
 from uvf.models.vehicle.flight_params import AirParams

@@ -6,8 +6,8 @@ import msgspec
 import yaml
 
 from schemas.messages import MissionItem
-from services.gcs.state.area_draft import FenceDraft, RallyDraft, Ring
-from services.gcs.state.plan_draft import MOST_ITEMS
+from services.gcs.state.plans.area_draft import FenceDraft, RallyDraft, Ring
+from services.gcs.state.plans.plan_draft import MOST_ITEMS
 from uvf.models.mission.fence import MOST_VERTICES, FenceFile, ZoneFile, zones_of
 from uvf.models.mission.file import Waypoint
 from uvf.models.yaml_data import FileLocation, convert, parse_yaml

@@ -6,8 +6,7 @@ from typing import Any
 
 from schemas import topics
 from schemas.topics import Topic
-from services.gcs.state.plot_series import SeriesName
-from services.gcs.state.vehicle_model import VehicleModel
+from services.gcs.state.plots.plot_series import SeriesName
 
 MOST_SERIES = 8
 WINDOWS = (10.0, 60.0, 600.0)  # s
@@ -35,9 +34,9 @@ ROVER: Mapping[str, Preset] = {
 }
 
 
-def presets_of(v: VehicleModel) -> Mapping[str, Preset]:
-    """The presets for a vehicle, by their names."""
-    return AIRCRAFT if v.flies else ROVER
+def presets_of(flies: bool) -> Mapping[str, Preset]:
+    """The presets for an aircraft or a ground vehicle, by their names."""
+    return AIRCRAFT if flies else ROVER
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,13 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Clock, DriveCommand, Health, LaserScan, PoseInFrame, Process, Processes
-from services.gcs.state.endpoints import MOST_SERVICES
-from services.gcs.state.graph_book import GraphBook
-from services.gcs.state.node_graph import pace_of
+from services.gcs.state.graph.endpoints import MOST_SERVICES
+from services.gcs.state.graph.graph_book import GraphBook
+from services.gcs.state.graph.node_graph import pace_of
+from services.gcs.state.graph.topic_verdicts import Grade
+from services.gcs.state.graph.traffic import FORGOTTEN_AFTER, KEY_LENGTH, MOST_KEYS
 from services.gcs.state.process_book import ProcessBook
 from services.gcs.state.refusals import PageRefusals
-from services.gcs.state.topic_verdicts import Grade
-from services.gcs.state.traffic import FORGOTTEN_AFTER, KEY_LENGTH, MOST_KEYS
 from services.gcs.watch import WatchedMessage
 from tests.services.gcs.watches import service_tokens
 

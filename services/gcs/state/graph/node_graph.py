@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from schemas import topics as table
 from schemas.messages import Clock, Process
 from schemas.topics import PREFIX, SYSTEM
-from services.gcs.state.endpoints import EndpointIndex, LivingService, ServiceBook
+from services.gcs.state.graph.endpoints import EndpointIndex, LivingService, ServiceBook
+from services.gcs.state.graph.topic_verdicts import Grade, TopicEvidence, judged
+from services.gcs.state.graph.traffic import BusTraffic, KeyTraffic
 from services.gcs.state.process_book import ProcessBook
-from services.gcs.state.topic_verdicts import Grade, TopicEvidence, judged
-from services.gcs.state.traffic import BusTraffic, KeyTraffic
 from uvf.runtime.messages.topic_lookup import is_of_table, topic_of
 
 CLOCK_OLD_AFTER = 2.0  # s, wall

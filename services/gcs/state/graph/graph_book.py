@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 
 from schemas.messages import Clock
-from services.gcs.state.endpoints import ServiceBook
-from services.gcs.state.node_graph import NodeGraph, graph_of, pace_of
+from services.gcs.state.graph.endpoints import ServiceBook
+from services.gcs.state.graph.node_graph import NodeGraph, graph_of, pace_of
+from services.gcs.state.graph.traffic import BusTraffic
 from services.gcs.state.process_book import ProcessBook
 from services.gcs.state.refusals import PageRefusals
-from services.gcs.state.traffic import BusTraffic
 from services.gcs.watch import WatchedMessage
 
 EVERY = 0.5  # s, wall, between two graphs

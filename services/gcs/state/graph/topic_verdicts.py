@@ -5,8 +5,8 @@ from enum import IntEnum
 from typing import Any
 
 from schemas.topics import Qos, Topic
-from services.gcs.state.endpoints import LivingService
-from services.gcs.state.traffic import OVER, KeyTraffic
+from services.gcs.state.graph.endpoints import LivingService
+from services.gcs.state.graph.traffic import OVER, KeyTraffic
 
 WARM_UP = 5.0  # s, wall: listening for a shorter time tells of nothing that is missing
 OLD_AT_LEAST = 2.0  # s, wall: a shorter silence may be the machine's

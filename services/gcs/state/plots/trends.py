@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from schemas.messages import NavState, Odometry
-from services.gcs.state.plot_series import PlotSeries
+from services.gcs.state.plots.plot_series import PlotSeries
 
 PERIOD = 0.2  # s, wall
 
