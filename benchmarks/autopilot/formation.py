@@ -69,7 +69,7 @@ def figures(site: Scenario, flown: Motions, case: str) -> Figures:
         late, aside, above = np.sqrt(np.mean(rows[:, 1:] ** 2, axis=0))
         row = {"late rms": late, "late p95": np.percentile(abs(rows[:, 1]), 95), "late max": abs(rows[:, 1]).max()}
         row |= {"aside rms": aside, "aside max": abs(rows[:, 2]).max(), "above rms": above, "above max": abs(rows[:, 3]).max()}
-        row["least"] = separation(flown[name], [other for n, other in flown.items() if n != name])
+        row["least"] = min(separation(flown[name], other)[0] for n, other in flown.items() if n != name)
         table[f"{name}, {case}"] = {metric: float(value) for metric, value in row.items()}
     return table
 

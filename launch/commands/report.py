@@ -3,6 +3,7 @@
 import math
 import signal
 from collections import Counter
+from collections.abc import Iterator
 from contextlib import nullcontext
 from pathlib import Path
 from threading import Event
@@ -62,21 +63,28 @@ def run_and_report(mission: str, until: float | None, log: Path | None) -> int:
 
 
 def _print_result(result: Result, log: Path) -> None:
-    table = Table("vehicle", "measure", "value", "limit", "")
+    table = Table("vehicle", "measure", "value", "limit", "", "decided by")
     for verdict in result.verdicts:
-        row = (verdict.criterion.vehicle, verdict.criterion.measure, f"{verdict.value:.3g}", verdict.limits)
-        table.add_row(*row, "passed" if verdict.passed else "FAILED")
+        row = (verdict.criterion.vehicle, verdict.criterion.measure, f"{verdict.found.value:.3g}", verdict.limits)
+        table.add_row(*row, "passed" if verdict.passed else "FAILED", escaped(verdict.found.circumstances))
     if result.verdicts:
         console.print(table)
-    for vehicle in dict.fromkeys(verdict.criterion.vehicle for verdict in result.verdicts if not verdict.passed):
-        for line in result.told.of(vehicle):
-            typer.echo(escaped(line))
+    for line in _why(result):
+        typer.echo(escaped(line))
     typer.echo(f"simulated {result.simulated:g} s in {result.wall:.1f} s: {result.factor:.1f} x real time")
     typer.echo(f"log {log}: {result.messages} messages, hash {result.log_hash}")
     for failure in result.failures:
         typer.echo(failure, err=True)
     if result.recording_error:
         typer.echo(result.recording_error, err=True)
+
+
+def _why(result: Result) -> Iterator[str]:
+    """What vehicles with failed criteria did: from the first moment on that decided one, or at the end of the run."""
+    failed = [verdict for verdict in result.verdicts if not verdict.passed]
+    for vehicle in dict.fromkeys(verdict.criterion.vehicle for verdict in failed):
+        moments = [verdict.found.t for verdict in failed if verdict.criterion.vehicle == vehicle and verdict.found.t is not None]
+        yield from result.told.of(vehicle, min(moments, default=None))
 
 
 def replay_onto_bus(log: Path, rate: float) -> int:

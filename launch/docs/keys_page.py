@@ -7,7 +7,9 @@ from typing import NamedTuple
 import msgspec
 
 from launch.docs.tables import anchor, keys_of, parts_of, table
-from launch.scoring.scores import MEASURES, RecordedTrack
+from launch.scoring.finding import Finding
+from launch.scoring.recorded_track import RecordedTrack
+from launch.scoring.scores import MEASURES
 from uvf.models.mission.file import MissionFile
 from uvf.models.vehicle.file import VehicleFile
 from uvf.models.world.file import WorldFile
@@ -80,7 +82,7 @@ def measures() -> list[Measure]:
     return [_measure(name, function) for name, function in MEASURES.items()]
 
 
-def _measure(name: str, function: Callable[[RecordedTrack], float]) -> Measure:
+def _measure(name: str, function: Callable[[RecordedTrack], Finding]) -> Measure:
     said = " ".join((function.__doc__ or "").split())
     found = re.fullmatch(r"(?P<meaning>.*?) \[(?P<unit>[^\]]+)\]\. (?P<counts>Counts .*)", said)
     if found is None:

@@ -13,15 +13,14 @@ REACH = 10.0  # s, each way of the station: where on the leader's track a follow
 SAMPLES = 0.1  # s
 
 
-def separation(own: Floats, others: list[Floats]) -> float:
-    """Least distance [m] between an aircraft and any of the others, each (n, >= 4): t [s], x, y, z [m, world]; infinite when alone."""
-    least = float("inf")
-    for other in others:
-        begin, end = max(own[0, 0], other[0, 0]), min(own[-1, 0], other[-1, 0])
-        t = own[(own[:, 0] >= begin) & (own[:, 0] <= end), 0]
-        if len(t):
-            least = min(least, float(np.linalg.norm(_at(own, t)[:, :3] - _at(other, t)[:, :3], axis=1).min()))
-    return least
+def separation(own: Floats, other: Floats) -> tuple[float, float]:
+    """Least distance [m] between two aircraft, each (n, >= 4): t [s], x, y, z [m, world], and when [s]; infinite where they never met."""
+    begin, end = max(own[0, 0], other[0, 0]), min(own[-1, 0], other[-1, 0])
+    t = own[(own[:, 0] >= begin) & (own[:, 0] <= end), 0]
+    if not len(t):
+        return float("inf"), begin
+    apart = np.linalg.norm(_at(own, t)[:, :3] - _at(other, t)[:, :3], axis=1)
+    return float(apart.min()), float(t[apart.argmin()])
 
 
 def station_errors(own: Floats, leader: Floats, follow: Follow) -> Floats:

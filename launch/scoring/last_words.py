@@ -1,4 +1,4 @@
-"""Why a vehicle has not done its mission: its last events, and what its planner and autopilot said at the end."""
+"""Why a vehicle has not done its mission: its events from where it went wrong on, and what planner and autopilot said at the end."""
 
 from collections import defaultdict, deque
 
@@ -7,11 +7,13 @@ from schemas.messages import Event, Mode, NavStatus, VehicleStatus
 from uvf.runtime.bus.interface import Bus, Sample
 from uvf.runtime.messages.enum_names import enum_name
 
-KEPT = 5  # events of a vehicle
+KEPT = 2000  # events of a vehicle
+TOLD = 5  # of them
+JUST_BEFORE = 1.0  # s
 
 
 class LastWords:
-    """Listens to a run on any bus (or is fed from a log) and keeps the last events and states of each vehicle."""
+    """Listens to a run on any bus (or is fed from a log) and keeps the events and last states of each vehicle."""
 
     def __init__(self) -> None:
         self._events: defaultdict[str, deque[tuple[float, str]]] = defaultdict(lambda: deque(maxlen=KEPT))
@@ -34,9 +36,14 @@ class LastWords:
         if self._states[vehicle].get(name, (t, ""))[1] != text:
             self._states[vehicle][name] = t, text
 
-    def of(self, vehicle: str) -> list[str]:
-        """Lines about a vehicle: its last events with their times, then its states with the time since when they hold [s, simulation]."""
-        told = [f"{vehicle} at {t:.1f} s: {text}" for t, text in self._events[vehicle]]
+    def of(self, vehicle: str, since: float | None = None) -> list[str]:
+        """Lines about a vehicle: events with their times, then its states with the time since when they hold [s, simulation].
+
+        Told are the events from ``since`` [s] on, or the last ones.
+        """
+        events = list(self._events[vehicle])
+        chosen = events[-TOLD:] if since is None else [event for event in events if event[0] >= since - JUST_BEFORE][:TOLD]
+        told = [f"{vehicle} at {t:.1f} s: {text}" for t, text in chosen]
         told += [f"{vehicle} since {t:.1f} s: {text}" for t, text in self._states[vehicle].values()]
         return told or [f"{vehicle}: no event and no status was recorded"]
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from launch.scoring.scores import MEASURES, Scorer
+from launch.scoring.scores import Scorer
 from schemas import topics
 from schemas.messages import Mode, VehicleStatus
 from services.autopilot.air import build as autopilot
@@ -31,7 +31,7 @@ def flown():
 
 
 def value(flown, vehicle, measure):
-    return MEASURES[measure](flown[0]._tracks[vehicle])
+    return flown[0].measure(vehicle, measure).value
 
 
 def test_the_followers_follow_all_the_time(flown):

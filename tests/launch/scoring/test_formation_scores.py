@@ -50,6 +50,6 @@ def test_the_beginning_is_not_scored():
 
 def test_the_separation_is_the_least_distance_at_one_time():
     own, other = flight(SPEED * T), flight(SPEED * T - 30.0, 0.0, 140.0)
-    assert separation(own, [other]) == pytest.approx(50.0)
-    assert separation(own, [other, flight(SPEED * (100.0 - T), 3.0)]) == pytest.approx(3.0, abs=1.3)
-    assert separation(own, []) == float("inf")
+    assert separation(own, other)[0] == pytest.approx(50.0)
+    least, when = separation(own, flight(SPEED * (100.0 - T), 3.0))
+    assert (least, when) == (pytest.approx(3.0, abs=1.3), pytest.approx(50.0, abs=0.1))

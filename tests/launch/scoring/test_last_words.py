@@ -1,6 +1,6 @@
 """What is told under a failed criterion: the last events, and what planner and autopilot say since when."""
 
-from launch.scoring.last_words import KEPT, LastWords
+from launch.scoring.last_words import TOLD, LastWords
 from schemas import topics
 from schemas.messages import Event, Mode, NavStatus, VehicleStatus
 from uvf.runtime.bus.interface import LocalBus
@@ -29,13 +29,14 @@ def test_a_vehicle_is_told_of_by_its_last_events_and_the_reasons_with_their_time
     ]
 
 
-def test_only_the_last_events_are_told():
+def test_only_the_last_events_are_told_or_the_first_from_a_time_on():
     bus, words = LocalBus(), LastWords()
     words.follow(bus)
-    for n in range(KEPT + 3):
+    for n in range(40):
         say(bus, topics.EVENTS.by("planner"), Event(text=f"event {n}"), float(n))
     bus.poll()
-    assert [line.rpartition(" ")[2] for line in words.of("kart")] == [str(n) for n in range(3, KEPT + 3)]
+    assert [line.rpartition(" ")[2] for line in words.of("kart")] == [str(n) for n in range(40 - TOLD, 40)]
+    assert [line.rpartition(" ")[2] for line in words.of("kart", since=20.5)] == [str(n) for n in range(20, 20 + TOLD)]
 
 
 def test_of_a_vehicle_that_said_nothing_it_is_said():
