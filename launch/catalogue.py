@@ -13,7 +13,7 @@ from uvf.runtime.contract.instances import Build, ServiceInstance
 @dataclass(frozen=True)
 class Kind:
     """A kind of service. ``build``: module with ``build(site)``; ``needs``: the vehicles without which it has no work, or
-    ``asked``: one that has parameters for it, or ``team``: two that draw maps.
+    ``asked``: one that has parameters for it, or ``team``: two that draw maps; or ``tasks``: those of the mission.
 
     ``nice``: its nice value, so that time keepers (router, conductor, simulators) come first when processors are few.
     """
@@ -21,7 +21,7 @@ class Kind:
     name: str
     build: str
     about: str
-    needs: Literal["ground", "fixed_wing", "any", "asked", "team"] = "any"
+    needs: Literal["ground", "fixed_wing", "any", "asked", "team", "tasks"] = "any"
     clock: Literal["sim", "wall"] = "sim"
     simulator: bool = False
     nice: int = 0
@@ -36,6 +36,7 @@ KINDS = (
     Kind("merging", "services.slam.merging.build", "one map of those who map the same place", "team", nice=12),
     Kind("planner", "services.planner.build", "exploration, paths, tracking", "ground", nice=2),
     Kind("autopilot", "services.autopilot.build", "command multiplexer, estimator, guidance, control, modes", nice=2),
+    Kind("executive", "services.executive.build", "the tasks of the mission", "tasks", nice=5),
     Kind("mavlink", "services.autopilot.mavlink.build", "MAVLink over UDP for ground stations", clock="wall", nice=5),
     Kind("gcs", "services.gcs.build", "the page at http://127.0.0.1:8080", clock="wall", nice=10),
 )
@@ -56,6 +57,7 @@ def needed(site: Scenario) -> list[Kind]:
     asked = {name for member in site.members.values() for name in member.file.params}
     mapping = [m for m in site.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None]
     kinds |= {"team"} if len(mapping) > 1 else set()
+    kinds |= {"tasks"} if site.mission.tasks else set()
     return [k for k in KINDS if k.needs in ("any", *kinds) or (k.needs == "asked" and k.name in asked)]
 
 

@@ -57,7 +57,9 @@ def check_params(site: Scenario, hosts: Sequence[ServiceInstance]) -> None:
         services = {host.service.name for host in hosts if host.vehicle == member.name}
         for name in member.file.params:
             if name not in services:
-                place = FileLocation(str(member.folder / "vehicle.yaml"), ("params", name))
+                own = name in member.entry.params
+                file, keys = (member.mission, ("vehicles", member.name)) if own else (str(member.folder / "vehicle.yaml"), ())
+                place = FileLocation(file, (*keys, "params", name))
                 raise BadInput(f"{place}: {member.name} has no service '{name}'; {nearest(name, services)}")
 
 

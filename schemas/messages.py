@@ -68,6 +68,7 @@ from schemas.v1.system_pb2 import (
     Refusal,
 )
 from schemas.v1.targets_pb2 import EstimateQuality, Targets
+from schemas.v1.tasks_pb2 import Tasks, TaskStatus
 from schemas.v1.time_pb2 import Clock, ClockRequest, Done
 from schemas.v1.vehicle_command_pb2 import (
     AltitudeCommand,
@@ -196,6 +197,8 @@ __all__ = [
     "SurfaceCommand",
     "TakeoffCommand",
     "Targets",
+    "TaskStatus",
+    "Tasks",
     "Timestamp",
     "Vector3",
     "VehicleStatus",

@@ -108,6 +108,7 @@ STOP = Topic(f"{_S}/cmd/<source>", m.StopCommand, 0, _Q.LATCHED, "STOP ALL and i
 STOP_STATE = Topic(f"{_S}/state/stop", m.StopState, 0, _Q.LATCHED, "who engages STOP ALL, kept beside the router", across_epochs=True)
 PROCESSES = Topic(f"{_S}/state/processes/<source>", m.Processes, 0, _Q.LATCHED, "what runs", logged=False, across_epochs=True)
 HEALTH = Topic(f"{_S}/state/health/<source>", m.Health, 2, _Q.STATE, "sign of life and counters of a process", logged=False)
+TASKS = Topic(f"{_S}/mission/tasks", m.Tasks, 0, _Q.LATCHED, "how far the tasks of the mission are", kept=True)
 SYSTEM_EVENTS = Topic(f"{_S}/state/events/<source>", m.Event, 0, _Q.EVENT, "what happened to the system")
 
 # sensors

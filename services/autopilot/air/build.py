@@ -61,10 +61,13 @@ def _host(site: Scenario, member: MissionVehicle) -> ServiceInstance:
         strips=tuple(_strip(s) for s in site.world.strips),
         altimeter=_altimeter(member),
         servos=_servos(member),
-        starts_armed=member.entry.job.armed,
+        starts_armed=bool(member.entry.job.armed),
         leads=leads,
         fence=fence_message(member.entry.fence, f"{site.mission_path}: {member.name}: fence"),
     )
+    if config.starts_in_air and member.entry.job.armed is False:
+        place = FileLocation(str(site.mission_path)).at("vehicles", member.name, "job", "armed")
+        raise BadInput(f"{place}: {member.name} starts in the air and is armed there; leave it out")
     if why := _fence_fault(config, Place(start.y, start.x, start.z), params):
         raise BadInput(f"{site.mission_path}: {member.name}: fence: {why}")
     if member.entry.job.follow is not None:

@@ -32,10 +32,11 @@ def _host(member: MissionVehicle, site: Scenario) -> ServiceInstance:
     imu, lidar = member.file.sensors.imu, member.file.sensors.lidar
     imu_rpy = imu.mount.rpy if imu is not None else (0.0, 0.0, 0.0)
     sweeping = sweeping_of(lidar) if lidar is not None else AT_ONCE
-    begins = job.explore or bool(items)
+    armed = (job.explore or bool(items)) if job.armed is None else job.armed
+    begins = armed and (job.explore or bool(items))
     params = member.params("autopilot_ground", GroundAutopilotParams)
 
     def make() -> GroundAutopilot:
-        return GroundAutopilot(body, (start.x, start.y), (begins, items), member.entry.system_id, params, fence, imu_rpy, sweeping)
+        return GroundAutopilot(body, (start.x, start.y), (armed, begins, items), member.entry.system_id, params, fence, imu_rpy, sweeping)
 
     return ServiceInstance(GroundAutopilot, make, member.name)

@@ -39,6 +39,7 @@ class Inputs(Reads):
     mavlink: DriveCommand | None = optional(topics.DRIVE.by("mavlink"))
     gcs: DriveCommand | None = optional(topics.DRIVE.by("gcs"))
     client: DriveCommand | None = optional(topics.DRIVE.by("client"))
+    executive: DriveCommand | None = optional(topics.DRIVE.by("executive"))
     offboard: DriveCommand | None = optional(topics.DRIVE.by("offboard"))
     planner: DriveCommand | None = optional(topics.DRIVE.by("planner"))
     stop: StopStatus = stop_all()

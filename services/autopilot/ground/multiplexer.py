@@ -12,7 +12,7 @@ COMMAND_MAX_AGE = 0.5  # s
 CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
 
 SOURCES: Mapping[int, tuple[str, ...]] = {
-    Mode.MODE_MANUAL: ("teleop", "mavlink", "gcs", "client"),
+    Mode.MODE_MANUAL: ("teleop", "mavlink", "gcs", "client", "executive"),
     Mode.MODE_OFFBOARD: tuple(source for rank in OFFBOARD for source in rank),
     Mode.MODE_MISSION: ("planner",),
     Mode.MODE_RETURN: ("planner",),

@@ -46,7 +46,7 @@ UNKNOWN_BATTERY = -1.0
 REFUSALS_EVERY = 10.0  # s between two events about commands that are no numbers
 
 
-SENDERS = ("teleop", "mavlink", "gcs", "client", "offboard", "planner")
+SENDERS = ("teleop", "mavlink", "gcs", "client", "executive", "offboard", "planner")
 """Inputs of commands, by who sends them."""
 
 
@@ -66,14 +66,14 @@ class GroundAutopilot(Service):
         self,
         body: GroundBody,
         home: Point,
-        job: tuple[bool, list[MissionItem]],
+        job: tuple[bool, bool, list[MissionItem]],
         system_id: int,
         params: GroundAutopilotParams,
         fence: Fence | None = None,
         imu_rpy: tuple[float, float, float] = (0.0, 0.0, 0.0),
         sweeping: Sweeping = AT_ONCE,
     ) -> None:
-        """home: start pose [m, world]; job: whether it begins at once, and the mission's items, perhaps none.
+        """home: start pose [m, world]; job: whether it is armed, whether it begins at once, and the mission's items, perhaps none.
 
         imu_rpy: of its mount; sweeping: of its lidar.
         """
@@ -85,9 +85,8 @@ class GroundAutopilot(Service):
         self._ramp = VelocityRamp(
             DriveLimits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration)
         )
-        raised_text, items = job
-        self._armed = raised_text
-        self._mode: int = Mode.MODE_MISSION if raised_text else Mode.MODE_HOLD
+        self._armed, begins, items = job
+        self._mode: int = Mode.MODE_MISSION if begins else Mode.MODE_HOLD
         self._stop = StopStatus()
         self._choice = ActiveCommand("", "starting")
         self._refused_at = -inf
@@ -242,7 +241,7 @@ class GroundAutopilot(Service):
         """As after power has been off, with mission, fence and rally points of now."""
         rally = self._rally
         body, home, system_id, imu_rpy, sweeping = self._made_with
-        job = (False, list(self._engine.mission.items))
+        job = (False, False, list(self._engine.mission.items))
         vars(self).update(vars(GroundAutopilot(body, home, job, system_id, self.params, self._safety.fence, imu_rpy, sweeping)))
         self._set_rally(rally)
 

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
+import msgspec
 import numpy as np
 
+from uvf.models.mission.extending import merge
 from uvf.models.mission.file import MissionFile, Vehicle, load_mission
 from uvf.models.params import Params
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
@@ -24,15 +26,18 @@ P = TypeVar("P", bound=Params)
 
 @dataclass(frozen=True)
 class MissionVehicle:
-    """One vehicle of the mission: its entry there, its file and its folder."""
+    """One vehicle of the mission: its entry there, its file, with the parameters that the mission sets, and its folder."""
 
     name: str
     entry: Vehicle
     file: VehicleFile
     folder: Path
+    mission: str = ""
+    """Path of the mission file; empty for a vehicle that was put in while it ran."""
 
     def params(self, service: str, type_: type[P]) -> P:
-        """Parameters of a service as this vehicle's file sets them, the rest by default. Raises BadInput."""
+        """Parameters of a service as this vehicle's file and its mission set them, the rest by default. Raises BadInput."""
+        convert(self.entry.params.get(service, {}), type_, self.mission, ("vehicles", self.name, "params", service))
         return convert(self.file.params.get(service, {}), type_, str(self.folder / "vehicle.yaml"), ("params", service))
 
 
@@ -92,13 +97,20 @@ def _radius(member: MissionVehicle) -> float:
     return member.file.ground.radius if member.file.ground is not None else AIRCRAFT_RADIUS
 
 
+def _with_params(file: VehicleFile, entry: Vehicle) -> VehicleFile:
+    return msgspec.structs.replace(file, params=merge(file.params, entry.params)) if entry.params else file
+
+
 def load_scenario(mission: str | Path, root: str | Path = ROOT) -> Scenario:
     """Loads a mission file and all that it names. root: folder that holds ``vehicles`` and ``worlds``. Raises BadInput."""
     mission, root = Path(mission), Path(root)
     data, place = load_mission(mission), FileLocation(str(mission))
     vehicles, worlds = root / "vehicles", root / "worlds"
     files = {name: load_vehicle(vehicles, entry.model, place.at("vehicles", name, "model")) for name, entry in data.vehicles.items()}
-    members = {name: MissionVehicle(name, entry, files[name], vehicles / entry.model) for name, entry in data.vehicles.items()}
+    members = {
+        name: MissionVehicle(name, entry, _with_params(files[name], entry), vehicles / entry.model, str(mission))
+        for name, entry in data.vehicles.items()
+    }
     site = Scenario(mission, data, load_world(worlds, data.world, place.at("world")), worlds / data.world, members)
     check_starts(site)
     return site

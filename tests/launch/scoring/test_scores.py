@@ -136,6 +136,6 @@ def test_without_a_flight_nothing_is_passed():
 
 
 def test_a_verdict_holds_both_limits():
-    criterion = Criterion("burger", "contacts", at_least=1, at_most=2)
+    criterion = Criterion("contacts", "burger", at_least=1, at_most=2)
     assert [Verdict(criterion, Finding(v)).passed for v in (0.9, 1, 2, 2.1)] == [False, True, True, False]
     assert Verdict(criterion, Finding(1)).limits == ">= 1 and <= 2"

@@ -87,7 +87,7 @@ def test_a_flying_mission_is_refused_for_a_ground_vehicle(site):
 
 def test_a_vehicle_with_a_job_begins_armed_and_one_without_does_not(site):
     nothing = dict.fromkeys(
-        ("teleop", "mavlink", "gcs", "client", "offboard", "planner", "pose", "link", "ticks", "scan", "correction", "battery")
+        ("teleop", "mavlink", "gcs", "client", "executive", "offboard", "planner", "pose", "link", "ticks", "scan", "correction", "battery")
     )
     asked = {"imu": [], "stop": NOBODY, **{request: [] for request in GroundAutopilot.requests}}
     for job, armed, mode in (({"explore": True}, True, Mode.MODE_MISSION), ({}, False, Mode.MODE_HOLD)):

@@ -1,15 +1,18 @@
 """``missions/<name>.yaml``: a world, the vehicles with their starts and jobs, and pass criteria."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
 
 from uvf.models.keys import key, name_like, plain
+from uvf.models.mission.extending import whole_mission
 from uvf.models.mission.faults import Fault, check_faults
 from uvf.models.mission.fence import FenceFile, zones_of
 from uvf.models.mission.formation import Follow, check_follow
+from uvf.models.mission.task_check import check_tasks
+from uvf.models.mission.tasks import Task, walk
 from uvf.models.names import FOLDER, SYSTEM, VEHICLE
 from uvf.models.world.wind import Wind, check_wind
 from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
@@ -74,13 +77,13 @@ class JobFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     explore: Annotated[bool, plain("A ground vehicle explores until it knows every place that it can reach.")] = False
     armed: Annotated[
-        bool,
+        bool | None,
         plain(
-            "An aircraft that stands on its wheels is armed from the start and takes off when its mission begins. "
-            "An aircraft that starts in the air is armed anyway. A ground vehicle with `explore` or a mission is armed "
-            "from the start; one without either waits disarmed in Hold."
+            "Whether the vehicle is armed from the start. Left out: a ground vehicle is when its job is to explore or a mission, and "
+            "begins with it; an aircraft is when it starts in the air, and there it cannot be otherwise. An armed aircraft on its wheels "
+            "takes off when its mission begins. A ground vehicle that is not armed waits in Hold for a task or an operator."
         ),
-    ] = False
+    ] = None
     mission: Annotated[list[Waypoint], plain("Mission items in the order in which they are done.")] = []
     follow: Annotated[Follow | None, plain("The aircraft keeps a formation slot behind a leader.")] = None
 
@@ -134,13 +137,18 @@ class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     roles: Annotated[dict[str, str], plain("Vehicle by role, for services that read another vehicle's messages (`leader: milvus1`).")] = {}
     fence: Annotated[FenceFile, plain("Where the vehicle may be.")] = FenceFile()
     maps: Annotated[Maps | None, plain("Maps and masks that a ground vehicle starts with.")] = None
+    params: Annotated[
+        dict[str, dict[str, Any]],
+        plain("Parameters by service that differ from those of the vehicle's file: `params: {mapping: {method: hector}}`."),
+    ] = {}
 
 
 class Criterion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One line of the score: a measured figure of a vehicle and its limits; see ``launch.scoring.scores``."""
+    """One line of the score: a measured figure of a vehicle or a task and its limits; see ``launch.scoring.scores``."""
 
-    vehicle: Annotated[str, plain("Vehicle that is measured.")]
     measure: Annotated[str, plain("One of the [measures](#measures).")]
+    vehicle: Annotated[str, plain("Vehicle that is measured; left out where a task is.")] = ""
+    task: Annotated[str, plain("Name of the task that is measured.")] = ""
     at_least: Annotated[float | None, key("unit of the measure", "The criterion holds when the measure is not below this.")] = None
     at_most: Annotated[float | None, key("unit of the measure", "The criterion holds when the measure is not above this.")] = None
 
@@ -157,6 +165,11 @@ class MissionFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ]
     seed: Annotated[int, key("", "Seed of every random number of the run. Two lockstep runs with the same seed are equal to the byte.")] = 1
     duration: Annotated[float, Meta(gt=0, le=1e6), key("s", "Simulation time after which `uvf run` ends and scores.")] = 120.0
+    roles: Annotated[dict[str, list[str]], plain("Vehicles by role: tasks name roles instead of vehicles, where several share one.")] = {}
+    tasks: Annotated[
+        list[Task],
+        plain("What the vehicles do together, one task after the other. When the last one is done, or one has failed, `uvf run` ends."),
+    ] = []
     criteria: Annotated[list[Criterion], plain("Pass criteria; all must hold.")] = []
     wind: Annotated[Wind | None, plain("Replaces the whole wind of the world.")] = None
     faults: Annotated[list[Fault], plain("Sensors and servos that fail during the run.")] = []
@@ -168,15 +181,17 @@ def load_mission(path: str | Path) -> MissionFile:
     if not path.is_file():
         known = [p.stem for p in path.parent.glob("*.yaml")] if path.parent.is_dir() else []
         raise BadInput(f"no mission '{path}'; {nearest(path.stem, known)}")
-    mission = load_yaml(path, MissionFile)
+    mission = load_yaml(path, MissionFile, lambda data, place: whole_mission(path))
     file = FileLocation(str(path))
     _check_vehicles(mission.vehicles, file.at("vehicles"))
     _check_follow(mission.vehicles, file.at("vehicles"))
     if mission.wind is not None:
         check_wind(mission.wind, file.at("wind"))
     check_faults(mission.faults, mission.vehicles, file.at("faults"))
+    check_tasks(mission.tasks, mission.roles, mission.vehicles, file, path.parent)
+    tasks = {task.name for task in walk(mission.tasks) if task.name}
     for i, criterion in enumerate(mission.criteria):
-        _check_criterion(criterion, mission.vehicles, file.at("criteria", i))
+        _check_criterion(criterion, mission.vehicles, tasks, file.at("criteria", i))
     return mission
 
 
@@ -209,8 +224,12 @@ def _check_jumps(items: list[Waypoint], place: FileLocation) -> None:
             raise BadInput(f"{place.at(i)}: jumps to {item.jump_to}, but the last item is {len(items) - 1} (the first is 0)")
 
 
-def _check_criterion(criterion: Criterion, vehicles: dict[str, Vehicle], place: FileLocation) -> None:
-    if criterion.vehicle not in vehicles:
+def _check_criterion(criterion: Criterion, vehicles: dict[str, Vehicle], tasks: set[str], place: FileLocation) -> None:
+    if bool(criterion.vehicle) == bool(criterion.task):
+        raise BadInput(f"{place}: a criterion is about a vehicle or a task, one of the two")
+    if criterion.task and criterion.task not in tasks:
+        raise BadInput(f"{place}: no task is called '{criterion.task}'; {nearest(criterion.task, tasks)}")
+    if criterion.vehicle and criterion.vehicle not in vehicles:
         raise BadInput(f"{place}: no vehicle '{criterion.vehicle}'; {nearest(criterion.vehicle, vehicles)}")
     low, high = criterion.at_least, criterion.at_most
     if low is None and high is None:

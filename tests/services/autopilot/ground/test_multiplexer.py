@@ -8,7 +8,8 @@ from schemas.messages import Mode
 from services.autopilot.ground.multiplexer import CLOCK_TOLERANCE, COMMAND_MAX_AGE, SOURCES, VelocityCommand, choose
 
 ALL = {
-    name: VelocityCommand(10.0, 0.1 * (i + 1), 0.0) for i, name in enumerate(("planner", "offboard", "client", "gcs", "mavlink", "teleop"))
+    name: VelocityCommand(10.0, 0.1 * (i + 1), 0.0)
+    for i, name in enumerate(("planner", "offboard", "executive", "client", "gcs", "mavlink", "teleop"))
 }
 
 

@@ -44,7 +44,7 @@ BODY = GroundBody(
     motor=Motor(stall_torque=1.0, no_load_speed=100.0),
 )
 WAYPOINTS = [MissionItem(position=Vector3(x=1.0)), MissionItem(position=Vector3(x=2.0))]
-NOBODY = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "offboard", "planner", "pose", "link"))
+NOBODY = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "executive", "offboard", "planner", "pose", "link"))
 NOBODY |= {"stop": StopStatus(), "imu": [], "ticks": None, "scan": None, "correction": None, "battery": None}
 NOTHING_ASKED = {name: [] for name in GroundAutopilot.requests}
 
@@ -53,7 +53,7 @@ class Bench:
     """Steps the service at 50 Hz, keeping commands fresh, and remembers what it last said."""
 
     def __init__(self, begins=True, items=()):
-        self.service = GroundAutopilot(BODY, (3.0, 4.0), (begins, list(items)), 7, GroundAutopilotParams())
+        self.service = GroundAutopilot(BODY, (3.0, 4.0), (begins, begins, list(items)), 7, GroundAutopilotParams())
         self.t = 0.0
         self.said = {}
         self.events = []

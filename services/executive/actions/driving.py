@@ -1,0 +1,157 @@
+"""Places that vehicles go to: goals, routes, and vehicles that they follow."""
+
+from collections.abc import Sequence
+from math import nan
+
+from schemas.messages import FollowRequest, GoalRequest, Mode, NavStatus, RouteRequest, Vector3
+from services.executive.actions.action import Asking, Engage, Failed
+from services.executive.interface import SOURCE
+from services.executive.situation import Situation
+
+Point = tuple[float, float]
+
+KINDS = {"waypoints": RouteRequest.WAYPOINTS, "through": RouteRequest.THROUGH, "patrol": RouteRequest.PATROL}
+SAME = 0.05  # m, that a goal may differ by and still be the same
+TAKEN_WITHIN = 3.0  # s, after which a planner that has accepted a goal says so in its status
+CIRCLING = 1.5  # radii of the circle that an aircraft holds on, within which it is at its goal
+
+
+class Errand(Asking):
+    """Base of what the planner of a ground vehicle is asked for and reports on."""
+
+    request = "goal"
+    jobs: tuple[str, ...] = ("goal",)
+
+    def __init__(self, vehicle: str) -> None:
+        super().__init__(vehicle)
+        self._engage = Engage(vehicle, Mode.MODE_MISSION)
+        self._engaged = self._taken = False
+        self._accepted_at: float | None = None
+
+    def begin(self, now: Situation) -> None:
+        """Begins anew: the vehicle is armed and told where to go."""
+        super().begin(now)
+        self._engage.begin(now)
+        self._engaged = self._taken = False
+        self._accepted_at = None
+        now.given_up.pop(self.vehicle, None)
+
+    def stop(self, now: Situation) -> None:
+        """Asks no more; what the planner has taken is cancelled by what it is asked for next."""
+        super().stop(now)
+        self._engage.stop(now)
+
+    def step(self, now: Situation) -> bool:
+        """Whether the vehicle is there. Raises Failed when the planner has given it up, or does something else."""
+        if not self._engaged:
+            self._engaged = self._engage.step(now)
+            self.reason = self._engage.reason
+            return False
+        if self._accepted_at is None:
+            if self._accepted(now, self._ticket or now.desk.ask(self.request, self.vehicle, self._message())):
+                self._accepted_at, self._ticket = now.t, None
+            return False
+        return self._followed(now, self._accepted_at)
+
+    def _followed(self, now: Situation, since: float) -> bool:
+        status = now.now.nav.get(self.vehicle)
+        if status is None:
+            self.reason = f"nothing is heard of {self.vehicle}'s planner"
+            return False
+        if status.job in self.jobs and self._is_ours(status):
+            self._taken = True
+            self.reason = status.reason or f"{status.distance_left:.1f} m left"
+            return self._is_done(status)
+        if self._taken or now.t - since > TAKEN_WITHIN:
+            why = now.given_up.get(self.vehicle, f"does something else: {status.job}")
+            raise Failed(f"{self.vehicle}: {why}")
+        return False
+
+    def _message(self) -> GoalRequest | RouteRequest | FollowRequest:
+        raise NotImplementedError
+
+    def _is_ours(self, status: NavStatus) -> bool:
+        return True
+
+    def _is_done(self, status: NavStatus) -> bool:
+        return status.state == NavStatus.REACHED
+
+
+class Goal(Errand):
+    """A ground vehicle drives to a place."""
+
+    def __init__(self, vehicle: str, point: Point, yaw: float | None) -> None:
+        super().__init__(vehicle)
+        self._point, self._yaw = point, yaw
+
+    def _message(self) -> GoalRequest:
+        x, y = self._point
+        return GoalRequest(position=Vector3(x=x, y=y), yaw=nan if self._yaw is None else self._yaw, source=SOURCE)
+
+    def _is_ours(self, status: NavStatus) -> bool:
+        return abs(status.goal.x - self._point[0]) <= SAME and abs(status.goal.y - self._point[1]) <= SAME
+
+
+class Route(Errand):
+    """A ground vehicle drives to several places."""
+
+    request = "route"
+
+    def __init__(self, vehicle: str, places: Sequence[Point], kind: str) -> None:
+        super().__init__(vehicle)
+        self.jobs = (kind,)
+        self._places, self._kind = places, kind
+
+    def _message(self) -> RouteRequest:
+        return RouteRequest(places=[Vector3(x=x, y=y) for x, y in self._places], kind=KINDS[self._kind], source=SOURCE)
+
+    def _is_ours(self, status: NavStatus) -> bool:
+        return len(status.route.places) == len(self._places)
+
+    def _is_done(self, status: NavStatus) -> bool:
+        last = self._kind == "through" or status.route_at == len(self._places) - 1
+        return self._kind != "patrol" and last and status.state == NavStatus.REACHED
+
+
+class Follow(Errand):
+    """A ground vehicle drives behind another one, until it is stopped."""
+
+    request = "follow"
+    jobs = ("follow",)
+
+    def __init__(self, vehicle: str, leader: str, distance: float) -> None:
+        super().__init__(vehicle)
+        self._leader, self._distance = leader, distance
+
+    def _message(self) -> FollowRequest:
+        return FollowRequest(vehicle=self._leader, distance=self._distance, source=SOURCE)
+
+    def _is_done(self, status: NavStatus) -> bool:
+        return False
+
+
+class FlyTo(Asking):
+    """An aircraft flies to a place and circles there."""
+
+    def __init__(self, vehicle: str, place: tuple[float, float, float]) -> None:
+        super().__init__(vehicle)
+        self._place = place
+        self._is_taken = False
+
+    def begin(self, now: Situation) -> None:
+        """Begins with asking for it."""
+        super().begin(now)
+        self._is_taken = False
+
+    def step(self, now: Situation) -> bool:
+        """Whether it circles there. Raises Failed when the goal is refused, or the aircraft does something else."""
+        if not self._is_taken:
+            x, y, z = self._place
+            message = GoalRequest(position=Vector3(x=x, y=y, z=z), yaw=nan, source=SOURCE)
+            self._is_taken = self._accepted(now, self._ticket or now.desk.ask("goal", self.vehicle, message))
+            return False
+        status, distance = now.now.status.get(self.vehicle), now.distance(self.vehicle, self._place[:2])
+        if status is None or distance is None:
+            return False
+        self.reason = f"{distance:.0f} m left"
+        return status.HasField("circle") and distance <= CIRCLING * abs(status.circle.radius)

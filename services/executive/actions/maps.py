@@ -1,0 +1,17 @@
+"""Maps that are saved."""
+
+from schemas.messages import SaveMapRequest
+from services.executive.actions.action import Asking
+from services.executive.situation import Situation
+
+
+class SaveMap(Asking):
+    """Saves the map that a vehicle draws."""
+
+    def __init__(self, vehicle: str, name: str) -> None:
+        super().__init__(vehicle)
+        self._name = name
+
+    def step(self, now: Situation) -> bool:
+        """Whether the map is saved."""
+        return self._accepted(now, self._ticket or now.desk.ask("save_map", self.vehicle, SaveMapRequest(name=self._name)))

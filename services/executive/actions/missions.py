@@ -1,0 +1,75 @@
+"""What a vehicle does by itself once it is told to: the mission of its job, and exploring."""
+
+from schemas.messages import MissionProgress, Mode
+from services.executive.actions.action import Asking, Engage, Failed
+from services.executive.situation import Situation
+
+SETTLED = 3.0  # s for which nothing is left to explore, before it is believed: the map still grows
+WHOLE = 0.999
+
+
+class ByItself(Asking):
+    """Base of what mode Mission leads to."""
+
+    def __init__(self, vehicle: str) -> None:
+        super().__init__(vehicle)
+        self._engage = Engage(vehicle, Mode.MODE_MISSION)
+        self._engaged = False
+
+    def begin(self, now: Situation) -> None:
+        """Begins with arming the vehicle."""
+        super().begin(now)
+        self._engage.begin(now)
+        self._engaged = False
+
+    def stop(self, now: Situation) -> None:
+        """Asks no more; the vehicle goes on until somebody tells it something else."""
+        super().stop(now)
+        self._engage.stop(now)
+
+    def step(self, now: Situation) -> bool:
+        """Whether it is done. Raises Failed where it cannot be."""
+        if not self._engaged:
+            self._engaged = self._engage.step(now)
+            self.reason = self._engage.reason
+            return False
+        return self._is_done(now)
+
+    def _is_done(self, now: Situation) -> bool:
+        raise NotImplementedError
+
+
+class DoMission(ByItself):
+    """The mission of the vehicle's job, to its last item."""
+
+    def _is_done(self, now: Situation) -> bool:
+        progress = now.now.progress.get(self.vehicle)
+        if progress is None:
+            self.reason = f"nothing is heard of {self.vehicle}'s mission"
+            return False
+        if progress.state == MissionProgress.NO_MISSION:
+            raise Failed(f"{self.vehicle} has no mission: give its job one")
+        self.reason = f"item {progress.current} of {progress.total}"
+        return progress.state == MissionProgress.COMPLETE
+
+
+class Explore(ByItself):
+    """Exploring, until every place is known."""
+
+    def __init__(self, vehicle: str) -> None:
+        super().__init__(vehicle)
+        self._since: float | None = None
+
+    def begin(self, now: Situation) -> None:
+        """Begins with arming the vehicle."""
+        super().begin(now)
+        self._since = None
+
+    def _is_done(self, now: Situation) -> bool:
+        status = now.now.nav.get(self.vehicle)
+        if status is None:
+            return False
+        self.reason = f"{100 * status.explored:.0f} % explored"
+        finished = status.job == "explore" and status.explored >= WHOLE
+        self._since = (self._since if self._since is not None else now.t) if finished else None
+        return self._since is not None and now.t - self._since >= SETTLED

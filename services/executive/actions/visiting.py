@@ -1,0 +1,85 @@
+"""Places shared out among a team of ground vehicles, so that the last one is visited early."""
+
+from collections.abc import Sequence
+from math import inf
+
+import numpy as np
+
+from schemas.messages import PreviewRequest, Vector3
+from services.executive.actions.action import Failed
+from services.executive.actions.driving import Route
+from services.executive.asking import Ticket
+from services.executive.interface import SOURCE
+from services.executive.situation import Situation
+from uvf.planning.assignment import assign
+
+Point = tuple[float, float]
+Start = Point | None
+
+
+class Visit:
+    """A team visits places: each planner says how long each way would take, then each vehicle drives its tour."""
+
+    def __init__(self, vehicles: Sequence[str], places: Sequence[Point]) -> None:
+        self._vehicles, self._places = vehicles, places
+        self._tickets: dict[tuple[str, Start, Point], Ticket] = {}
+        self._routes: list[Route] | None = None
+        self.reason = ""
+
+    def begin(self, now: Situation) -> None:
+        """Begins with asking for all ways."""
+        self._routes, self.reason = None, "asks how long the ways are"
+        starts: tuple[Start, ...] = (None, *self._places)
+        self._tickets = {
+            (vehicle, start, goal): now.desk.ask("preview", vehicle, _preview(start, goal), patience=0.0)
+            for vehicle in self._vehicles
+            for start in starts
+            for goal in self._places
+            if start != goal
+        }
+
+    def step(self, now: Situation) -> bool:
+        """Whether all places have been visited. Raises Failed where one cannot be reached by anybody, or a tour fails."""
+        if self._routes is None:
+            if not all(ticket.accepted or ticket.refused for ticket in self._tickets.values()):
+                return False
+            self._routes = self._shared_out()
+            for route in self._routes:
+                route.begin(now)
+        done = [route for route in self._routes if route.step(now)]
+        self._routes = [route for route in self._routes if route not in done]
+        self.reason = "; ".join(f"{route.vehicle}: {route.reason}" for route in self._routes)
+        return not self._routes
+
+    def stop(self, now: Situation) -> None:
+        """Asks no more."""
+        for ticket in self._tickets.values():
+            now.desk.drop(ticket)
+        for route in self._routes or ():
+            route.stop(now)
+
+    def _shared_out(self) -> list[Route]:
+        to_goals = np.array([[self._time(vehicle, None, goal) for goal in self._places] for vehicle in self._vehicles])
+        between = np.array(
+            [[[self._time(vehicle, start, goal) for goal in self._places] for start in self._places] for vehicle in self._vehicles]
+        )
+        found = assign(to_goals, between)
+        if found.unreachable:
+            x, y = self._places[found.unreachable[0]]
+            raise Failed(f"nobody can go to ({x:g}, {y:g})")
+        tours = zip(self._vehicles, found.tours, strict=True)
+        return [Route(vehicle, [self._places[goal] for goal in tour], "waypoints") for vehicle, tour in tours if tour]
+
+    def _time(self, vehicle: str, start: Start, goal: Point) -> float:
+        """s; infinite where there is no way."""
+        if start == goal:
+            return 0.0
+        ticket = self._tickets[vehicle, start, goal]
+        return float(ticket.reply.duration) if ticket.accepted else inf
+
+
+def _preview(start: Start, goal: Point) -> PreviewRequest:
+    request = PreviewRequest(position=Vector3(x=goal[0], y=goal[1]), source=SOURCE)
+    if start is not None:
+        request.start.CopyFrom(Vector3(x=start[0], y=start[1]))
+    return request

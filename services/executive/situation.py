@@ -1,0 +1,66 @@
+"""What the tasks of a mission see in one step, and what they say."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import hypot
+
+from schemas.messages import DriveCommand, Mode, TaskStatus
+from services.executive.asking import Desk
+from services.executive.interface import Inputs
+from uvf.models.mission.task_check import members_of
+from uvf.models.mission.tasks import Who
+from uvf.models.scenario import MissionVehicle
+
+Point = tuple[float, float]
+
+
+@dataclass
+class Situation:
+    """One step at ``t`` [s, simulation]."""
+
+    members: Mapping[str, MissionVehicle]
+    roles: Mapping[str, list[str]]
+    desk: Desk = field(default_factory=Desk)
+    records: dict[str, TaskStatus] = field(default_factory=dict)
+    """Of the tasks that have names."""
+    t: float = 0.0
+    now: Inputs = field(default_factory=Inputs)
+    drive: dict[str, DriveCommand] = field(default_factory=dict)
+    given_up: dict[str, str] = field(default_factory=dict)
+    """Why a vehicle's planner has given up its goal last."""
+
+    def begin(self, t: float, now: Inputs) -> None:
+        """Begins a step."""
+        self.t, self.now, self.drive = t, now, {}
+        for vehicle, events in now.told.items():
+            for event in events:
+                if "given up" in event.text:
+                    self.given_up[vehicle] = event.cause
+
+    def vehicles(self, who: Who) -> list[str]:
+        """Names of the vehicles that are meant."""
+        return members_of(who, self.roles)
+
+    def flies(self, vehicle: str) -> bool:
+        """Whether the vehicle is an aircraft."""
+        return self.members[vehicle].file.kind == "fixed_wing"
+
+    def place(self, vehicle: str) -> tuple[float, float, float] | None:
+        """Where the vehicle thinks it is: x, y, z [m, world]; None without a fresh pose."""
+        pose = self.now.pose.get(vehicle)
+        return (pose.pose.position.x, pose.pose.position.y, pose.pose.position.z) if pose is not None else None
+
+    def distance(self, vehicle: str, point: Point) -> float | None:
+        """Horizontal distance [m] of a vehicle from a point [m, world]; None without a fresh pose."""
+        place = self.place(vehicle)
+        return hypot(place[0] - point[0], place[1] - point[1]) if place is not None else None
+
+    def is_armed(self, vehicle: str) -> bool:
+        """Whether the vehicle's autopilot says that it is armed."""
+        status = self.now.status.get(vehicle)
+        return status is not None and status.armed
+
+    def mode(self, vehicle: str) -> int:
+        """The mode of a vehicle's autopilot."""
+        status = self.now.status.get(vehicle)
+        return status.mode if status is not None else Mode.MODE_UNSPECIFIED
