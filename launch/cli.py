@@ -61,6 +61,8 @@ AS_TODAY = "With these files instead of those attached to the log."
 RUN = "Folder of a run, or a log; by default the latest run."
 BENCHMARKS = f"Groups, each followed by the cases wanted of it: {', '.join(settings.benchmark_names())}."
 WORLDS = "Those of the data that are run: numbers, ranges FIRST:BEYOND:STEP, names or patterns, with commas between. By default all."
+SEEDS = "Run it so often, each time with another seed: success rate and spread."
+SET = "Another value than the file's, as vehicles.rover.model=burger; may be given several times."
 RATE = "Simulation seconds per second, at most 1000; 0 = as fast as it goes."
 MISSION = "Name in missions/ or path of a mission file."
 MissionArgument = Annotated[str, typer.Argument(help=MISSION, callback=known_mission)]
@@ -115,12 +117,16 @@ def run(
     lockstep: Annotated[bool, typer.Option("--lockstep", hidden=True)] = True,  # it always is; scripts of before say so
     until: Annotated[float | None, typer.Option(help="Simulation seconds; by default the mission's duration.")] = None,
     log: Annotated[Path | None, typer.Option(help="Where to record; by default in runs/.")] = None,
+    seeds: Annotated[int | None, typer.Option(min=1, max=10_000, help=SEEDS)] = None,
+    change: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
 ) -> None:
     """Run a mission in one process, as fast as it goes, and score it: exit code 0 when every criterion holds. 'uvf up' runs it live."""
-    from launch.commands.report import run_and_report
+    from launch.commands.run import run_and_report, run_campaign
 
     with bad_input_is_one_line():
-        raise typer.Exit(run_and_report(mission, until, log))
+        if seeds is not None:
+            raise typer.Exit(run_campaign(mission, seeds, until, change or []))
+        raise typer.Exit(run_and_report(mission, until, log, change or []))
 
 
 @app.command()
@@ -178,7 +184,7 @@ def replay(
     mission: Annotated[str | None, typer.Option("--mission", "-m", help=AS_TODAY, callback=known_mission)] = None,
 ) -> None:
     """Put a log back onto the bus, or into one service and compare the output."""
-    from launch.commands.report import replay_into, replay_onto_bus
+    from launch.commands.log_tools import replay_into, replay_onto_bus
 
     with bad_input_is_one_line():
         raise typer.Exit(replay_into(log, service, vehicle, mission) if service else replay_onto_bus(log, rate))

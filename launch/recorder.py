@@ -7,13 +7,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from launch import settings
+from launch.attachments import attachments
 from launch.processes import open_bus
 from launch.runs import hold, keep_quota
 from launch.worker import Worker, freeze_gc, lower_priority, worker
 from schemas import topics
 from schemas.messages import Event
-from uvf.models.scenario import Scenario, load_scenario
-from uvf.models.vehicle.layers import folders_of
+from uvf.models.scenario import load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.zenoh_bus import ZenohBus
@@ -22,7 +22,6 @@ from uvf.runtime.log.recording import DEPTH, Recorder
 
 FLUSH_PERIOD = 1.0  # s
 ROTATE_BYTES = 500_000_000
-COMMON = "common"  # in vehicles/: parts that several vehicles include
 ROOM = 100_000_000  # bytes free on the disk, from which recording is taken up again
 NICE = 10
 LOOK = 0.05  # s
@@ -199,14 +198,3 @@ def _record(life: Worker, bus: ZenohBus, series: LogSeries) -> None:
     end = time.monotonic() + LAST
     while write() and time.monotonic() < end:
         pass
-
-
-def attachments(site: Scenario) -> dict[str, bytes]:
-    """The files that define the run (mission, world, vehicles) by their paths below the project's folder."""
-    files = {f"missions/{site.mission_path.name}": site.mission_path}
-    folders = {f"worlds/{site.mission.world}": site.world_folder}
-    vehicles = {folder for member in site.members.values() for folder in (*folders_of(member.folder), member.folder.parent / COMMON)}
-    folders |= {f"vehicles/{folder.name}": folder for folder in sorted(vehicles)}
-    for name, folder in folders.items():
-        files |= {f"{name}/{path.relative_to(folder)}": path for path in sorted(folder.rglob("*")) if path.is_file()}
-    return {name: path.read_bytes() for name, path in files.items()}

@@ -6,13 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from launch import catalogue
+from launch.attachments import attachments
 from launch.checks import refuse_problems
-from launch.recorder import attachments
 from launch.scoring.last_words import LastWords
 from launch.scoring.scores import Scorer, Verdict
 from uvf.models.scenario import Scenario
 from uvf.runtime.log.recording import Recorder
 from uvf.runtime.time.lockstep import Lockstep
+
+AFTERWARDS = 1.0  # s after the last task, in which vehicles come to rest
 
 
 @dataclass(frozen=True)
@@ -48,10 +50,17 @@ def run_lockstep(
     watch: Callable[[float], bool] = lambda t: True,
     warn: Callable[[str], None] = lambda line: None,
 ) -> Result:
-    """Runs every sim-clock service of the mission up to ``until`` [s] and records it. Raises BadInput."""
+    """Runs every sim-clock service of the mission up to ``until`` [s], or until its tasks are over, and records it. Raises BadInput."""
     scorer, told = Scorer(site), LastWords()
     hosts = catalogue.hosts(site, [k for k in catalogue.needed(site) if k.clock == "sim"])
     refuse_problems(site, hosts)
+    reached = 0.0
+
+    def goes_on(t: float) -> bool:
+        nonlocal reached
+        reached = t
+        return scorer.tasks.ended is None or t < scorer.tasks.ended + AFTERWARDS
+
     with Recorder(log, attachments(site)) as recorder:
         lockstep = Lockstep(hosts, warn=warn, contains=True)
         try:
@@ -59,8 +68,10 @@ def run_lockstep(
             scorer.follow(lockstep.bus)
             told.follow(lockstep.bus)
             begun = time.perf_counter()
-            lockstep.run(until, watch)
+            lockstep.run(until, lambda t: watch(t) and goes_on(t))
             wall = time.perf_counter() - begun
         finally:
             lockstep.close()
-    return Result(scorer.judge(), recorder.hash.hexdigest(), until, wall, recorder.written, recorder.error, lockstep.failures(), told)
+    return Result(
+        scorer.judge(), recorder.hash.hexdigest(), min(reached, until), wall, recorder.written, recorder.error, lockstep.failures(), told
+    )

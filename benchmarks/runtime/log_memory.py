@@ -15,7 +15,7 @@ from typing import Any
 from benchmarks.measuring.memory import in_own_process, peak_mb
 from benchmarks.measuring.timing import stopwatch
 from launch.commands.bench import Figures
-from launch.commands.report import describe_log
+from launch.commands.log_tools import describe_log
 from schemas import topics
 from schemas.messages import Clock, CompressedImage, Imu, NavState, Vector3
 from uvf.runtime.bus.interface import LocalBus, Sample

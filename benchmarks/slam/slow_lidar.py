@@ -18,9 +18,9 @@ import yaml
 from numpy.typing import NDArray
 
 from benchmarks.measuring.timing import stopwatch
+from launch.attachments import attachments
 from launch.commands.bench import Figures
 from launch.commands.slam import DEFAULT_METHOD
-from launch.recorder import attachments
 from launch.scoring.truth import true_poses
 from schemas import topics
 from schemas.messages import MapFix, WheelCommand

@@ -26,7 +26,7 @@ RunArgument = Annotated[Path, typer.Argument(metavar="LOG", help="An MCAP log, o
 @log_app.command("info")
 def log_info(log: LogArgument) -> None:
     """Topics, counts, length, gaps and hash of a log."""
-    from launch.commands.report import describe_log
+    from launch.commands.log_tools import describe_log
 
     with bad_input_is_one_line():
         describe_log(log)
@@ -91,7 +91,7 @@ def log_page(
 @log_app.command("recover")
 def log_recover(log: LogArgument, out: Annotated[Path | None, typer.Option(help="By default <log>-recovered.mcap.")] = None) -> None:
     """Save what can be saved of a log that was cut off."""
-    from launch.commands.report import recover_log
+    from launch.commands.log_tools import recover_log
 
     with bad_input_is_one_line():
         recover_log(log, out)

@@ -8,8 +8,8 @@ import msgspec
 
 from launch.docs.tables import anchor, keys_of, parts_of, table
 from launch.scoring.finding import Finding
-from launch.scoring.recorded_track import RecordedTrack
 from launch.scoring.scores import MEASURES
+from launch.scoring.task_measures import TASK_MEASURES
 from uvf.models.mission.file import MissionFile
 from uvf.models.vehicle.file import VehicleFile
 from uvf.models.world.file import WorldFile
@@ -78,11 +78,16 @@ def _about(struct: type[msgspec.Struct]) -> str:
 
 
 def measures() -> list[Measure]:
-    """All measures of criteria. Raises ValueError for a docstring that does not say unit or time."""
+    """All measures of vehicles. Raises ValueError for a docstring that does not say unit or time."""
     return [_measure(name, function) for name, function in MEASURES.items()]
 
 
-def _measure(name: str, function: Callable[[RecordedTrack], Finding]) -> Measure:
+def task_measures() -> list[Measure]:
+    """All measures of tasks. Raises ValueError as ``measures``."""
+    return [_measure(name, function) for name, function in TASK_MEASURES.items()]
+
+
+def _measure(name: str, function: Callable[..., Finding]) -> Measure:
     said = " ".join((function.__doc__ or "").split())
     found = re.fullmatch(r"(?P<meaning>.*?) \[(?P<unit>[^\]]+)\]\. (?P<counts>Counts .*)", said)
     if found is None:
@@ -95,3 +100,5 @@ def _measures() -> Iterator[str]:
     yield from ("What a criterion of a mission can measure. Motion is measured on the truth, not on the vehicle's estimate of it.", "")
     yield from ("| measure | meaning | unit | counts |", "|---|---|---|---|")
     yield from (f"| `{m.name}` | {m.meaning}. | {m.unit} | {m.counts.removeprefix('Counts ')} |" for m in measures())
+    yield from ("", "Of a task, named by `task` instead of `vehicle`:", "", "| measure | meaning | unit | counts |", "|---|---|---|---|")
+    yield from (f"| `{m.name}` | {m.meaning}. | {m.unit} | {m.counts.removeprefix('Counts ')} |" for m in task_measures())

@@ -3,7 +3,7 @@
 Scores may read ``truth/**``; nothing that drives or flies may.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +14,11 @@ from launch.scoring.flight_measures import separation, spacing_error, speed_at_e
 from launch.scoring.ground_measures import contacts, crashed, distance_driven, goal_time, mapped_floor, pose_error, pose_error_rms
 from launch.scoring.path_measures import altitude_error, circuits, course_error, legs, path_error, waypoint_error
 from launch.scoring.recorded_track import RECORDED, RecordedTrack
+from launch.scoring.task_measures import TASK_MEASURES, RecordedTask, RecordedTasks
+from schemas import topics
+from schemas.messages import Tasks
 from uvf.models.mission.file import Criterion
+from uvf.models.mission.tasks import walk
 from uvf.models.scenario import Scenario
 from uvf.models.yaml_data import BadInput, FileLocation, nearest
 from uvf.runtime.bus.interface import Bus, Sample
@@ -30,9 +34,11 @@ MEASURES: dict[str, Callable[[RecordedTrack], Finding]] = {f.__name__: f for f i
 def check_criteria(site: Scenario) -> None:
     """Raises BadInput for a criterion with an unknown measure."""
     for i, criterion in enumerate(site.mission.criteria):
-        if criterion.measure not in MEASURES:
+        known: Collection[str] = TASK_MEASURES if criterion.task else MEASURES
+        if criterion.measure not in known:
             place = FileLocation(str(site.mission_path)).at("criteria", i, "measure")
-            raise BadInput(f"{place}: no measure '{criterion.measure}'; {nearest(criterion.measure, MEASURES, len(MEASURES))}")
+            of = "task has a measure" if criterion.task else "measure"
+            raise BadInput(f"{place}: no {of} '{criterion.measure}'; {nearest(criterion.measure, known, len(known))}")
 
 
 class Scorer:
@@ -43,14 +49,18 @@ class Scorer:
         check_criteria(site)
         self._tracks: dict[str, RecordedTrack] = {}
         self._tracks.update({name: RecordedTrack(name, site, team=self._tracks) for name in site.members})
+        self.tasks = RecordedTasks({task.name: RecordedTask() for task in walk(site.mission.tasks) if task.name})
 
     def follow(self, bus: Bus) -> None:
         """Subscribes to what the measures need."""
         for topic in RECORDED:
             bus.subscribe(topic.at("*"), topic.qos, self.heard, depth=256)
+        bus.subscribe(topics.TASKS.at(topics.SYSTEM), topics.TASKS.qos, self.heard, depth=256)
 
     def heard(self, sample: Sample) -> None:
-        """Stores a sample with the vehicle that it belongs to."""
+        """Stores a sample with the vehicle that it belongs to, or the tasks."""
+        if sample.key == topics.TASKS.at(topics.SYSTEM):
+            self.tasks.heard(sample.stamp_ns / 1e9, Tasks.FromString(sample.payload))
         track = self._tracks.get(sample.key.split("/")[1])
         if track is not None:
             track.heard(sample)
@@ -65,7 +75,12 @@ class Scorer:
 
     def judge(self) -> list["Verdict"]:
         """One verdict for each criterion of the mission."""
-        return [Verdict(c, self.measure(c.vehicle, c.measure)) for c in self._site.mission.criteria]
+        return [Verdict(c, self._found(c)) for c in self._site.mission.criteria]
+
+    def _found(self, criterion: Criterion) -> Finding:
+        if criterion.task:
+            return TASK_MEASURES[criterion.measure](self.tasks.tasks[criterion.task])
+        return self.measure(criterion.vehicle, criterion.measure)
 
 
 @dataclass(frozen=True)
@@ -80,6 +95,11 @@ class Verdict:
         """Whether the value is within the criterion's limits."""
         low, high = self.criterion.at_least, self.criterion.at_most
         return (low is None or self.found.value >= low) and (high is None or self.found.value <= high)
+
+    @property
+    def subject(self) -> str:
+        """Whom or what the criterion is about."""
+        return self.criterion.vehicle or f"task {self.criterion.task}"
 
     @property
     def limits(self) -> str:

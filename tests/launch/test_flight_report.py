@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from launch.attachments import attachments
 from launch.cli import app
 from launch.flights.figures import deviation, figures
 from launch.flights.history import histories
 from launch.flights.report import flights
-from launch.recorder import attachments
 from schemas import topics
 from schemas.messages import Battery, Kind, Mode, NavState, Quaternion, SurfaceCommand, Vector3, VehicleStatus
 from services.autopilot.air import build as autopilot

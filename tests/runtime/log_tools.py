@@ -4,7 +4,7 @@ import re
 import sys
 from pathlib import Path
 
-from launch.commands.report import describe_log
+from launch.commands.log_tools import describe_log
 from schemas import topics
 from schemas.messages import CompressedImage, NavState
 from uvf.runtime.bus.interface import LocalBus

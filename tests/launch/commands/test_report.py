@@ -2,8 +2,9 @@
 
 import pytest
 
-from launch.commands.report import describe_log, replay_into, run_and_report
-from launch.recorder import attachments
+from launch.attachments import attachments
+from launch.commands.log_tools import describe_log, replay_into
+from launch.commands.run import run_and_report
 from launch.run import run_lockstep
 from services.slam.odometry.service import OdometryService
 from uvf.models.scenario import ROOT, load_scenario
@@ -78,7 +79,7 @@ def test_a_mission_in_which_an_instance_has_failed_is_not_passed(tmp_path, capsy
 
     monkeypatch.setattr(OdometryService, "step", fails)
     monkeypatch.setattr(OdometryService, "stale", fails)
-    assert run_and_report("demo", 0.5, tmp_path / "log.mcap") == 1
+    assert run_and_report("demo", 0.5, tmp_path / "log.mcap", []) == 1
     said = capsys.readouterr()
     assert "odometry of burger failed: 3 of its steps" in said.err
     assert "burger since" in said.out and "autopilot in mode" in said.out  # why the criteria do not hold

@@ -8,7 +8,7 @@ import yaml
 
 from launch import up
 from launch.checks import check_mission
-from launch.commands import report
+from launch.commands import run
 from launch.vehicles import mission_faults
 from uvf.models.scenario import ROOT, load_scenario
 
@@ -58,10 +58,10 @@ def test_the_check_of_a_mission_tells_each_fault_with_its_place(faulty, monkeypa
 
 
 def test_a_run_says_so_before_it_begins(faulty, monkeypatch, capsys):
-    monkeypatch.setattr(report, "load_scenario", lambda path: load_scenario(path, faulty))
-    monkeypatch.setattr(report, "run_lockstep", lambda *_: SimpleNamespace(passed=True))
-    monkeypatch.setattr(report, "_print_result", lambda *_: None)
-    assert report.run_and_report(str(faulty / "missions" / "two.yaml"), 1.0, faulty / "log.mcap") == 0
+    monkeypatch.setattr(run, "load_scenario", lambda path: load_scenario(path, faulty))
+    monkeypatch.setattr(run, "run_lockstep", lambda *_: SimpleNamespace(passed=True))
+    monkeypatch.setattr(run, "_print_result", lambda *_: None)
+    assert run.run_and_report(str(faulty / "missions" / "two.yaml"), 1.0, faulty / "log.mcap", []) == 0
     assert capsys.readouterr().err == f"uvf: {LINE}\n"
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
-from launch.recorder import attachments
+from launch.attachments import attachments
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput

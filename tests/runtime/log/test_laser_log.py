@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.slam.slow_lidar import slow_site
-from launch.recorder import attachments
+from launch.attachments import attachments
 from launch.slam.opening import open_log
 from schemas import topics
 from schemas.messages import FrameTransform, FrameTransforms, LaserScan, Odometry, Vector3

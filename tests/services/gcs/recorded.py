@@ -1,6 +1,6 @@
 """A recorded mission as ``uvf up`` leaves it: with the files that say what was run."""
 
-from launch.recorder import attachments
+from launch.attachments import attachments
 from tests.golden.make import GOLDEN
 from tests.services.gcs.scripted import demo_site
 from uvf.runtime.log.reading import read_log

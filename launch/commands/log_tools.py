@@ -1,22 +1,14 @@
-"""What ``run``, ``replay`` and ``log`` print."""
+"""What ``replay``, ``log info`` and ``log recover`` print."""
 
-import math
 import signal
 from collections import Counter
-from collections.abc import Iterator
 from contextlib import nullcontext
 from pathlib import Path
 from threading import Event
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
 
 from launch import catalogue, settings
-from launch.run import Result, run_lockstep
-from launch.runs import new_run
-from launch.vehicles.mission_faults import warnings
 from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
@@ -25,66 +17,8 @@ from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.log.reading import log_begin, log_metadata, read_log
 from uvf.runtime.log.recovery import recover
 from uvf.runtime.log.replay import into_service, logged_site, onto_bus
-from uvf.runtime.messages.validation import escaped
 
 SHOWN = 20
-console = Console()
-
-
-def run_and_report(mission: str, until: float | None, log: Path | None) -> int:
-    """Runs in lockstep up to ``until`` [s, simulation] with a progress bar and prints the score; 0 when every criterion holds, else 1.
-
-    Raises BadInput.
-    """
-    site = load_scenario(settings.mission_path(mission))
-    until = until if until is not None else site.mission.duration
-    if not 0 < until < math.inf:
-        raise BadInput(f"--until {until}: how long to simulate, more than 0 s")
-    for line in warnings(site):
-        typer.echo(f"uvf: {line}", err=True)
-    log = log or new_run() / "log-000.mcap"
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed:.0f} of {task.total:.0f} s"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(site.mission_path.stem, total=until)
-
-        def watch(t: float) -> bool:
-            if round(t * 100) % 50 == 0:
-                bar.update(task, completed=t)
-            return True
-
-        result = run_lockstep(site, until, log, watch, lambda line: bar.console.print(line, markup=False))
-    _print_result(result, log)
-    return 0 if result.passed else 1
-
-
-def _print_result(result: Result, log: Path) -> None:
-    table = Table("vehicle", "measure", "value", "limit", "", "decided by")
-    for verdict in result.verdicts:
-        row = (verdict.criterion.vehicle, verdict.criterion.measure, f"{verdict.found.value:.3g}", verdict.limits)
-        table.add_row(*row, "passed" if verdict.passed else "FAILED", escaped(verdict.found.circumstances))
-    if result.verdicts:
-        console.print(table)
-    for line in _why(result):
-        typer.echo(escaped(line))
-    typer.echo(f"simulated {result.simulated:g} s in {result.wall:.1f} s: {result.factor:.1f} x real time")
-    typer.echo(f"log {log}: {result.messages} messages, hash {result.log_hash}")
-    for failure in result.failures:
-        typer.echo(failure, err=True)
-    if result.recording_error:
-        typer.echo(result.recording_error, err=True)
-
-
-def _why(result: Result) -> Iterator[str]:
-    """What vehicles with failed criteria did: from the first moment on that decided one, or at the end of the run."""
-    failed = [verdict for verdict in result.verdicts if not verdict.passed]
-    for vehicle in dict.fromkeys(verdict.criterion.vehicle for verdict in failed):
-        moments = [verdict.found.t for verdict in failed if verdict.criterion.vehicle == vehicle and verdict.found.t is not None]
-        yield from result.told.of(vehicle, min(moments, default=None))
 
 
 def replay_onto_bus(log: Path, rate: float) -> int:

@@ -1,0 +1,126 @@
+"""What ``uvf run`` prints."""
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from statistics import median
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from launch import settings
+from launch.campaign import SeedRun, run_seeds, success_interval
+from launch.changed_mission import changed_mission
+from launch.run import Result, run_lockstep
+from launch.runs import new_run
+from launch.vehicles.mission_faults import warnings
+from uvf.models.scenario import load_scenario
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.validation import escaped
+
+console = Console()
+
+
+def run_and_report(mission: str, until: float | None, log: Path | None, changes: list[str]) -> int:
+    """Runs in lockstep up to ``until`` [s, simulation] with a progress bar and prints the score; 0 when every criterion holds, else 1.
+
+    Raises BadInput.
+    """
+    base = settings.mission_path(mission)
+    log = log or new_run() / "log-000.mcap"
+    site = load_scenario(changed_mission(base, changes, log.parent))
+    until = _until(until, site.mission.duration)
+    for line in warnings(site):
+        typer.echo(f"uvf: {line}", err=True)
+    with _progress(site.mission_path.stem, until) as (bar, advance):
+
+        def watch(t: float) -> bool:
+            if round(t * 100) % 50 == 0:
+                advance(t)
+            return True
+
+        result = run_lockstep(site, until, log, watch, lambda line: bar.console.print(line, markup=False))
+    _print_result(result, log)
+    return 0 if result.passed else 1
+
+
+def run_campaign(mission: str, seeds: int, until: float | None, changes: list[str]) -> int:
+    """Runs with several seeds and prints success rate and spread; 0 when all have passed, else 1. Raises BadInput."""
+    folder = new_run()
+    path = changed_mission(settings.mission_path(mission), changes, folder)
+    site = load_scenario(path)
+    for line in warnings(site):
+        typer.echo(f"uvf: {line}", err=True)
+    runs: list[SeedRun] = []
+    with _progress(f"{path.stem}, {seeds} seeds", seeds, "runs") as (_, advance):
+        for run in run_seeds(path, seeds, None if until is None else _until(until, math.inf), folder):
+            runs.append(run)
+            advance(len(runs))
+    _print_campaign(sorted(runs, key=lambda run: run.seed))
+    return 0 if all(run.passed for run in runs) else 1
+
+
+def _until(given: float | None, duration: float) -> float:
+    until = given if given is not None else duration
+    if not 0 < until < math.inf:
+        raise BadInput(f"--until {until}: how long to simulate, more than 0 s")
+    return until
+
+
+@contextmanager
+def _progress(title: str, total: float, unit: str = "s") -> Iterator[tuple[Progress, Callable[[float], None]]]:
+    """A progress bar, and what moves it."""
+    text = TextColumn("{task.completed:.0f} of {task.total:.0f} " + unit)
+    with Progress(TextColumn("{task.description}"), BarColumn(), text, TimeRemainingColumn(), console=console, transient=True) as bar:
+        task = bar.add_task(title, total=total)
+        yield bar, lambda done: bar.update(task, completed=done)
+
+
+def _print_result(result: Result, log: Path) -> None:
+    table = Table("subject", "measure", "value", "limit", "", "decided by")
+    for verdict in result.verdicts:
+        row = (escaped(verdict.subject), verdict.criterion.measure, f"{verdict.found.value:.3g}", verdict.limits)
+        table.add_row(*row, "passed" if verdict.passed else "FAILED", escaped(verdict.found.circumstances))
+    if result.verdicts:
+        console.print(table)
+    for line in _why(result):
+        typer.echo(escaped(line))
+    typer.echo(f"simulated {result.simulated:g} s in {result.wall:.1f} s: {result.factor:.1f} x real time")
+    typer.echo(f"log {log}: {result.messages} messages, hash {result.log_hash}")
+    for failure in result.failures:
+        typer.echo(failure, err=True)
+    if result.recording_error:
+        typer.echo(result.recording_error, err=True)
+
+
+def _why(result: Result) -> Iterator[str]:
+    """What vehicles with failed criteria did: from the first moment on that decided one, or at the end of the run."""
+    failed = [verdict for verdict in result.verdicts if not verdict.passed]
+    for vehicle in dict.fromkeys(verdict.criterion.vehicle for verdict in failed if verdict.criterion.vehicle):
+        moments = [verdict.found.t for verdict in failed if verdict.criterion.vehicle == vehicle and verdict.found.t is not None]
+        yield from result.told.of(vehicle, min(moments, default=None))
+
+
+def _print_campaign(runs: list[SeedRun]) -> None:
+    table = Table("subject", "measure", "limit", "least", "median", "most", "passed")
+    for same in zip(*(run.verdicts for run in runs), strict=True):
+        values = sorted(verdict.found.value for verdict in same)
+        spread = (f"{value:.3g}" for value in (values[0], median(values), values[-1]))
+        first, passed = same[0], sum(verdict.passed for verdict in same)
+        table.add_row(escaped(first.subject), first.criterion.measure, first.limits, *spread, f"{passed} of {len(runs)}")
+    console.print(table)
+    for run in runs:
+        for verdict in run.verdicts:
+            if not verdict.passed:
+                what = f"{verdict.subject} {verdict.criterion.measure} {verdict.found.value:.3g}"
+                typer.echo(escaped(f"seed {run.seed}: {what}; {verdict.found.circumstances or 'at the end'}; log {run.log}"))
+        for failure in run.failures:
+            typer.echo(escaped(f"seed {run.seed}: {failure}; log {run.log}"))
+    passed = sum(run.passed for run in runs)
+    low, high = success_interval(passed, len(runs))
+    factor = sum(run.simulated for run in runs) / sum(run.wall for run in runs)
+    typer.echo(f"{passed} of {len(runs)} passed: {100 * passed / len(runs):.0f} %, 95 % interval {100 * low:.0f} to {100 * high:.0f} %")
+    typer.echo(f"each simulated {sum(run.simulated for run in runs) / len(runs):.0f} s on average, {factor:.1f} x real time")
