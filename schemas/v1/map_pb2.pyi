@@ -10,14 +10,16 @@ from typing import ClassVar as _ClassVar, Iterable as _Iterable, Mapping as _Map
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class SaveMapRequest(_message.Message):
-    __slots__ = ("name", "mode", "source")
+    __slots__ = ("name", "mode", "source", "layer")
     NAME_FIELD_NUMBER: _ClassVar[int]
     MODE_FIELD_NUMBER: _ClassVar[int]
     SOURCE_FIELD_NUMBER: _ClassVar[int]
+    LAYER_FIELD_NUMBER: _ClassVar[int]
     name: str
     mode: str
     source: str
-    def __init__(self, name: _Optional[str] = ..., mode: _Optional[str] = ..., source: _Optional[str] = ...) -> None: ...
+    layer: str
+    def __init__(self, name: _Optional[str] = ..., mode: _Optional[str] = ..., source: _Optional[str] = ..., layer: _Optional[str] = ...) -> None: ...
 
 class MapRequest(_message.Message):
     __slots__ = ("layer", "source")

@@ -61,8 +61,8 @@ class Planter:
         if task.drive is not None:
             return [Drive(who(task.drive.vehicle), self._tracks[task.drive.track])]
         if task.save_map is not None:
-            names = who(task.save_map.vehicle)
-            return [SaveMap(name, task.save_map.name if len(names) == 1 else f"{task.save_map.name}_{name}") for name in names]
+            wanted, names = task.save_map, who(task.save_map.vehicle)
+            return [SaveMap(name, wanted.name if len(names) == 1 else f"{wanted.name}_{name}", wanted.layer) for name in names]
         return self._drives(task)
 
     def _drives(self, task: Task) -> list[Action]:

@@ -25,6 +25,8 @@ with c_errors_discarded():
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
+AHEAD = 1e-3  # m that the eye is before the mount: of a corner exactly in the eye's own plane, as of a plate that the camera is flush with,
+# the engine divides 0 by 0, and then fills columns from -2^31 on
 NEAR = 0.02  # m
 TO_LIGHT = (0.4, -0.6, 1.0)
 
@@ -118,9 +120,9 @@ class BulletRenderer:
 
     def take(self, camera: Camera, body: Pose) -> Shot:
         """The picture that a camera of a vehicle takes with its body at this pose."""
-        eye = body.position + rotate(body.world_from_body, np.array(camera.mount.xyz))
         world_from_camera = multiply(body.world_from_body, from_euler(*camera.mount.rpy))
         forward, left, up = matrix(world_from_camera).T
+        eye = body.position + rotate(body.world_from_body, np.array(camera.mount.xyz)) + AHEAD * forward
         view = pybullet.computeViewMatrix(eye.tolist(), (eye + forward).tolist(), up.tolist())
         _, _, rgba, buffer, seen = pybullet.getCameraImage(
             camera.width,

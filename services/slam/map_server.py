@@ -27,9 +27,10 @@ class MapServer(Service):
     hz = 2.0
 
     class Inputs(Reads):
-        """The vehicle's own map, and requests."""
+        """The vehicle's own map, that of its team, and requests."""
 
         map: Grid | None = optional(topics.MAP)
+        team: Grid | None = optional(topics.TEAM_MAP)
         placing: FrameTransform | None = optional(topics.TF_WORLD)
         save: list[SaveMapRequest] = request(topics.SAVE_MAP)
         get: list[MapRequest] = request(topics.GET_MAP)
@@ -56,15 +57,20 @@ class MapServer(Service):
         layers = self._served if fresh else {}
         return self.Outputs(
             **layers,
-            save=[self._saved(request, now.map, now.placing) for request in now.save],
+            save=[self._saved(request, now) for request in now.save],
             get=[self._found(request, now.map) for request in now.get],
         )
 
-    def _saved(self, request: SaveMapRequest, map: Grid | None, placing: FrameTransform | None) -> Reply:
+    def _saved(self, request: SaveMapRequest, now: Inputs) -> Reply:
+        layers, layer = {DRAWN: now.map, "team": now.team}, request.layer or DRAWN
+        if layer not in layers:
+            return Reply(reason=f"no layer '{layer}' is saved; {nearest(layer, layers)}")
+        map, placing = layers[layer], now.placing
         if not NAME.fullmatch(request.name):
             return Reply(reason=f"a map cannot be called '{request.name}'; use letters, digits, - and _")
         if map is None or placing is None:
-            return Reply(reason="there is no map yet; wait for the first scan")
+            wait = "wait for the first scan" if layer == DRAWN else "the first vehicle of a team has it, once two maps fit together"
+            return Reply(reason=f"there is no map yet; {wait}")
         try:
             self._save(in_world(as_map(map), placing), request.name, request.mode or "trinary")
         except BadInput as error:

@@ -16,6 +16,7 @@ from uvf.models.scenario import ROOT
 from uvf.models.shapes.mesh import load_mesh
 from uvf.models.shapes.mesh_parts import MeshPart
 from uvf.models.shapes.solid import Solid
+from uvf.models.urdf.model import engine_urdf
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.sensors import Camera, Mount
 from uvf.models.world.file import Box, Cylinder, Field, Origin, WorldFile
@@ -137,6 +138,20 @@ def test_a_mesh_is_drawn(tmp_path):
     assert (
         picture(EMPTY, vehicles={"other": AircraftShape([MeshPart(*load_mesh(mesh))], [], (0.9, 0.9, 0.9))}, poses=pose) != picture(EMPTY)
     ).any()
+
+
+@pytest.mark.timeout(60, method="thread")
+def test_a_plate_whose_corners_lie_in_the_cameras_own_plane_is_drawn_all_the_same():
+    """My2bot's camera is flush with its front plate: at this pose the engine divided 0 by 0 and looped for minutes."""
+    folder = ROOT / "vehicles" / "my2bot"
+    body = Pose(np.array((12.2010558, 1.17586785, -1.04911927e-05)), np.array((0.701058994, 5.75134178e-07, 1.95837733e-06, -0.713103279)))
+    renderer = BulletRenderer(EMPTY, solids(EMPTY, Path()), {"rover": engine_urdf(folder / "my2bot.urdf.xacro")})
+    camera = load_vehicle(ROOT / "vehicles", "my2bot").sensors.camera
+    for k in range(20):
+        there = body._replace(position=body.position + np.array((0.0, k * 1e-7, 0.0)))
+        renderer.place(0.0, {"rover": there})
+        assert renderer.take(camera, there).picture.shape == (120, 160, 3)
+    renderer.close()
 
 
 def test_the_same_scene_gives_the_same_bytes():

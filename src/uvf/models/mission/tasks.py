@@ -105,6 +105,9 @@ class SaveMapTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     vehicle: Annotated[Who, plain("Ground vehicles or roles; of several, the vehicle's name is added to that of the map.")]
     name: Annotated[str, plain("Name of the map.")]
+    layer: Annotated[
+        Literal["grid", "team"], plain("`grid`: its own map. `team`: the merged one, which the first vehicle of a team has.")
+    ] = "grid"
 
 
 class VisitTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
