@@ -52,6 +52,7 @@ LENGTHS: dict[str, int] = {
     "uvf.v1.Param.description": 4000,
     "uvf.v1.ParamRequest.name": 100,
     "uvf.v1.SimObjects.objects": 1000,
+    "uvf.v1.Tasks.tasks": 500,
     "uvf.v1.StopState.engagements": 100,
     "uvf.v1.StopState.released": 1000,
     "uvf.v1.StopCommand.releases": 100,

@@ -7,6 +7,7 @@ from collections.abc import Collection
 
 Order = tuple[tuple[str, ...], ...]
 """Ranks of sources, the highest first; those of one rank are equals. Who is in none is not let through."""
+DISARMED_OFFBOARD = "it is disarmed: arm it before mode Offboard, in which others move it at once"
 OFFBOARD: Order = (("offboard",), ("client", "mavlink"))
 """In mode Offboard, of any vehicle: a program on board first; then programs elsewhere, over the bus or over MAVLink."""
 SAME_WITHIN = 10.0  # s: what happens again within that time is an alternation that has been told of

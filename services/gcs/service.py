@@ -52,6 +52,7 @@ from schemas.messages import (
     SetCurrentRequest,
     SimObjects,
     StopCommand,
+    Tasks,
     VehicleCommandRequest,
     VehicleStatus,
     WindRequest,
@@ -120,6 +121,7 @@ class GroundStation(Service):
         """Messages of the vehicles and of the system, and answers to requests."""
 
         clock: Clock | None = optional(topics.CLOCK)
+        tasks: Tasks | None = optional(topics.TASKS)
         processes: list[Processes] = optional(every(topics.PROCESSES.by("*")))
         objects: SimObjects | None = optional(topics.OBJECTS)
         aircraft: SimObjects | None = optional(topics.AIR_OBJECTS)
@@ -213,6 +215,7 @@ class GroundStation(Service):
         """One refresh of the page at ``t`` [s, wall]."""
         newest: Mapping[str, Mapping[str, Message]] = {name: getattr(now, name) for name in NEWEST}
         self._hear_system(t, now.clock, now.processes, now.health)
+        self._model.tasks = now.tasks
         self._hear_others(t, now.external, now.stop, (now.objects, now.aircraft), now.truth)
         self._keep(t, now, newest)
         return self._act(t, newest, now.events, [one for name in self.calls for one in getattr(now, name)])

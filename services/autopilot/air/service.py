@@ -32,6 +32,7 @@ from services.autopilot.air.modes.paths import LoiterOptions
 from services.autopilot.air.setpoints import STICK_RELEASED, ControlOutput, FlightContext
 from services.autopilot.air.status import telemetry
 from services.autopilot.air.status.event_log import EventLog
+from services.autopilot.multiplexing import DISARMED_OFFBOARD
 from services.autopilot.parameter_state import ToldParams
 from services.autopilot.safe_state import coming_down
 from uvf.control.flight_control import level_trim
@@ -258,6 +259,8 @@ class AutopilotAir(Service):
             wanted = ", ".join(m.value for m in intake.MODES.values())
             known = Mode.Name(request.mode) if request.mode in Mode.values() else f"mode {request.mode}"
             return _reply(f"{known} is not flown by this autopilot; {wanted} are")
+        if request.mode == Mode.MODE_OFFBOARD and not self._armed:
+            return _reply(DISARMED_OFFBOARD)
         refusal = self._mode_manager.change_mode(intake.MODES[request.mode], request.source)
         if not refusal:
             self._safety.watch.overrule()

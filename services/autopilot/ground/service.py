@@ -29,7 +29,7 @@ from services.autopilot.ground.mission import MissionEngine, Point, mission_of, 
 from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, ActiveCommand, VelocityCommand, choose
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.safety import GroundActivity, GroundFailsafeMonitor, GroundSensorInputs, mode_of, place
-from services.autopilot.multiplexing import Once
+from services.autopilot.multiplexing import DISARMED_OFFBOARD, Once
 from services.autopilot.parameter_state import ToldParams
 from services.autopilot.safe_state import standing
 from uvf.control.drive_limits import DriveLimits, VelocityRamp, within_limits
@@ -204,6 +204,8 @@ class GroundAutopilot(Service):
             known = ", ".join(mode_name(mode) for mode in SOURCES)
             asked = mode_name(request.mode) if request.mode in Mode.values() else request.mode
             return Reply(accepted=False, reason=f"a ground vehicle has no mode {asked}; there are: {known}")
+        if request.mode == Mode.MODE_OFFBOARD and not self._armed:
+            return Reply(accepted=False, reason=DISARMED_OFFBOARD)
         self._safety.overrule()
         if request.mode != self._mode:
             self._mode = request.mode

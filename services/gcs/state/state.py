@@ -15,6 +15,7 @@ from schemas.messages import (
     SimObject,
     SimObjects,
     StopEngagement,
+    Tasks,
 )
 from schemas.topics import SYSTEM
 from services.gcs.state.control import ControlBook
@@ -63,6 +64,8 @@ class Model:
         """The last request to the system, and its outcome."""
         self.clock: Clock | None = None
         self.clock_at: float | None = None
+        self.tasks: Tasks | None = None
+        """How far those of the mission are; None where it has none."""
         self.stop = StopStatus()
         self.log = EventHistory()
         self._floors = {v.name: MappedFloor(site.world, v.member) for v in self.vehicles.values() if not v.flies}

@@ -13,6 +13,7 @@ from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
 from services.gcs.view.panels.progress import order_line
 from services.gcs.view.panels.status import clock_text
+from services.gcs.view.panels.tasks import tasks_section
 from uvf.models.yaml_data import BadInput, read_yaml
 
 RATES = (0.25, 0.5, 1.0, 2.0, 5.0, 0.0)
@@ -22,9 +23,10 @@ LONGEST = 160  # letters of what a mission is about
 def run_panel(model: Model, session: BrowserSession, t: float) -> Html:
     """The panel at ``t`` [s, wall] as one page sees it."""
     return html(
-        "<h2 class='g-h'>Simulation{}</h2>{}{}<h2 class='g-h'>Missions</h2>{}{}",
+        "<h2 class='g-h'>Simulation{}</h2>{}{}{}<h2 class='g-h'>Missions</h2>{}{}",
         html("<span>{}</span>", _state(model)),
         _clock(model, session, t),
+        tasks_section(model.tasks),
         _wind(model),
         order_line(model.order),
         joined(_mission(model, session, name, about, t) for name, about in missions(model.site.mission_path.parent).items()),

@@ -250,3 +250,8 @@ def test_parameters_set_while_running_count():
     assert bench.said["progress"].reached == -1
     bench.service.params = GroundAutopilotParams(acceptance_radius=0.6)
     assert bench.step(30, pose=(0.5, 0.0)).said["progress"].reached == 0
+
+
+def test_offboard_is_refused_while_it_is_disarmed_with_the_reason():
+    reply = Bench(begins=False).step(set_mode=[ModeRequest(mode=Mode.MODE_OFFBOARD, source="client")]).said["set_mode"][0]
+    assert not reply.accepted and "arm it before mode Offboard" in reply.reason

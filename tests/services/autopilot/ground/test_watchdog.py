@@ -103,7 +103,7 @@ def test_the_reason_is_told(alone):
     told = {round(seconds(m.timestamp), 1): m for m in status}
     assert told[1.9].command_source == "teleop"
     assert told[3.9].command_source == ""
-    assert told[3.9].reason == "mode MANUAL: no fresh command from teleop, mavlink, gcs, client"
+    assert told[3.9].reason == "mode MANUAL: no fresh command from teleop, mavlink, gcs, client, executive"
 
 
 def test_teleop_comes_before_the_others_and_they_only_follow_when_it_is_silent(tmp_path):

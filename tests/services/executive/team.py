@@ -1,0 +1,105 @@
+"""A team of vehicles that do what the executive asks of them, in a step or two, without a bus."""
+
+from pathlib import Path
+
+from schemas.messages import (
+    Event,
+    MissionProgress,
+    Mode,
+    NavStatus,
+    PoseInFrame,
+    PreviewReply,
+    Reply,
+    TaskStatus,
+    VehicleStatus,
+)
+from services.executive.interface import Inputs
+from services.executive.service import Executive
+from uvf.models.mission.file import MissionFile
+from uvf.models.scenario import ROOT, load_scenario
+from uvf.models.yaml_data import parse_yaml
+from uvf.runtime.contract.service import Answer
+from uvf.runtime.messages.convert import planar_pose
+
+MISSION = """about: Two rovers and an aircraft.
+world: house
+duration: 10
+vehicles:
+  anne: {model: burger, system_id: 1, start: {x: 2.2, y: 1.3}, job: {explore: true, armed: false}}
+  bert: {model: burger, system_id: 2, start: {x: 8.0, y: 4.4}}
+  carl: {model: milvus, system_id: 3, start: {x: 0.0, y: -200.0, z: 60.0}}
+roles: {team: [anne, bert]}
+"""
+DT = 0.1
+
+
+class Team:
+    """``asked``: every request as (name, vehicle, message); ``refusals``: by (name, vehicle) why it is refused."""
+
+    def __init__(self, tasks: str, folder: Path, tracks=None) -> None:
+        path = folder / "team.yaml"
+        path.write_text(MISSION + "tasks:\n" + tasks)
+        self.site = load_scenario(path, ROOT)
+        self.mission: MissionFile = self.site.mission
+        assert parse_yaml(tasks, "tasks")
+        self.tracks = tracks or {}
+        self.service = self.made()
+        self.t = 0.0
+        self.asked, self.events, self.drives = [], [], []
+        self.refusals: dict[tuple[str, str], str] = {}
+        self.places = {"anne": (2.2, 1.3), "bert": (8.0, 4.4), "carl": (0.0, -200.0)}
+        self.status = {name: VehicleStatus(mode=Mode.MODE_HOLD, battery_remaining=0.8) for name in self.places}
+        self.nav: dict[str, NavStatus] = {}
+        self.progress: dict[str, MissionProgress] = {}
+        self.told: dict[str, list[Event]] = {}
+        self.tasks = None
+        self._answers: dict[str, list[Answer]] = {}
+
+    def made(self) -> Executive:
+        return Executive(self.mission.tasks, self.site.members, self.mission.roles, self.tracks)
+
+    def step(self, n: int = 1) -> None:
+        for _ in range(n):
+            self.t = round(self.t + DT, 6)
+            pose = {name: PoseInFrame(pose=planar_pose(x, y, 0.0)) for name, (x, y) in self.places.items()}
+            now = Inputs(pose=pose, status=self.status, nav=self.nav, progress=self.progress, told=self.told, **self._answers)
+            self.told, self._answers = {}, {}
+            out = self.service.step(self.t, now)
+            self.tasks = out.tasks or self.tasks
+            self.events += [event.text for event in out.events or ()]
+            self.drives.append({name: (c.linear, c.angular) for name, c in (out.drive or {}).items()})
+            for name in self.service.calls:
+                for vehicle, messages in (getattr(out, name) or {}).items():
+                    for message in messages:
+                        self._asked(name, vehicle, message)
+
+    def _asked(self, name, vehicle, message) -> None:
+        self.asked.append((name, vehicle, message))
+        why = self.refusals.get((name, vehicle), "")
+        reply = PreviewReply(accepted=not why, reason=why, duration=1.0) if name == "preview" else Reply(accepted=not why, reason=why)
+        self._answers.setdefault(name, []).append(Answer(vehicle, message, reply))
+        if why:
+            return
+        if name == "arm":
+            self.status[vehicle].armed = message.arm
+        elif name == "mode":
+            self.status[vehicle].mode = message.mode
+        elif name == "goal":
+            self.nav[vehicle] = NavStatus(job="goal", state=NavStatus.DRIVING, goal=message.position)
+        elif name == "route":
+            self.nav[vehicle] = NavStatus(job="waypoints", state=NavStatus.DRIVING, route=message)
+        elif name == "follow":
+            self.nav[vehicle] = NavStatus(job="follow", state=NavStatus.DRIVING, follow=message)
+
+    def arrive(self, vehicle: str) -> None:
+        self.nav[vehicle].state = NavStatus.REACHED
+
+    def give_up(self, vehicle: str, cause: str) -> None:
+        self.nav[vehicle] = NavStatus(job="idle")
+        self.told[vehicle] = [Event(text="goal: goal given up", cause=cause)]
+
+    def states(self) -> list[str]:
+        return [TaskStatus.State.Name(task.state) for task in self.tasks.tasks]
+
+    def requests(self) -> list[str]:
+        return [f"{name} {vehicle}" for name, vehicle, _ in self.asked]

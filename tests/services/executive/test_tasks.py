@@ -1,0 +1,225 @@
+"""Tasks are done in their order, end as they say, and tell why where they fail."""
+
+import numpy as np
+import pytest
+
+from schemas.messages import MissionProgress, Mode, NavStatus, TaskStatus
+from services.executive.actions.joystick import DriveTrack
+from services.executive.asking import PATIENCE
+from tests.services.executive.team import Team
+
+GOAL = "  - {name: go, goal: {vehicle: anne, x: 4.0, y: 1.7}}\n"
+
+
+def test_a_vehicle_is_armed_brought_into_its_mode_and_told_where_to_go(tmp_path):
+    team = Team(GOAL, tmp_path)
+    team.step(10)
+    assert team.requests() == ["arm anne", "mode anne", "goal anne"]
+    assert (team.asked[1][2].mode, team.asked[2][2].position.x) == (Mode.MODE_MISSION, 4.0)
+    assert team.states() == ["RUNNING"]
+    team.arrive("anne")
+    team.step(2)
+    assert (team.states(), team.tasks.state) == (["DONE"], TaskStatus.DONE)
+    assert team.events == ["task go begins", "task go is done"]
+
+
+def test_a_goal_that_is_given_up_fails_with_the_planners_reason(tmp_path):
+    team = Team(GOAL, tmp_path)
+    team.step(10)
+    team.give_up("anne", "walls all about")
+    team.step(2)
+    assert team.tasks.state == TaskStatus.FAILED
+    assert team.tasks.tasks[0].reason == "anne: walls all about"
+
+
+def test_another_goal_than_its_own_is_not_taken_for_it(tmp_path):
+    team = Team(GOAL, tmp_path)
+    team.step(10)
+    team.nav["anne"] = NavStatus(job="goal", state=NavStatus.REACHED)
+    team.nav["anne"].goal.x = 1.0
+    team.step(2)
+    assert team.tasks.tasks[0].reason == "anne: does something else: goal"
+
+
+def test_a_refusal_is_asked_again_and_then_is_the_reason(tmp_path):
+    team = Team(GOAL, tmp_path)
+    team.refusals["goal", "anne"] = "the vehicle is outside its map"
+    team.step(60)
+    assert team.states() == ["RUNNING"]
+    del team.refusals["goal", "anne"]
+    team.step(20)
+    team.arrive("anne")
+    team.step(2)
+    assert team.states() == ["DONE"]
+
+    team = Team(GOAL, tmp_path)
+    team.refusals["arm", "anne"] = "it lies on its side"
+    team.step(round(PATIENCE * 10) + 30)
+    assert (team.states(), team.tasks.tasks[0].reason) == (["FAILED"], "anne: it lies on its side")
+
+
+def test_a_task_waits_for_its_condition_and_says_for_what(tmp_path):
+    team = Team("  - {name: late, when: {vehicle: team, reaches: {x: 5.0, y: 5.0, within: 0.5}}, disarm: bert}\n", tmp_path)
+    team.step(12)
+    assert (team.states(), team.tasks.tasks[0].reason) == (["WAITING"], "waits until anne or bert is within 0.5 m of (5, 5)")
+    assert team.asked == []
+    team.places["bert"] = (5.2, 4.9)
+    team.step(3)
+    assert team.states() == ["DONE"]
+
+
+@pytest.mark.parametrize(
+    ("condition", "change"),
+    [
+        ("{at: 3.0}", lambda team: None),
+        ("{after: 2.0}", lambda team: None),
+        ("{vehicle: anne, near: {vehicle: bert, within: 1.0}}", lambda team: team.places.update(anne=(7.5, 4.4))),
+        ("{vehicle: carl, item: 2}", lambda team: team.progress.update(carl=MissionProgress(reached=2))),
+        ("{vehicle: anne, mode: offboard}", lambda team: setattr(team.status["anne"], "mode", Mode.MODE_OFFBOARD)),
+        ("{vehicle: carl, landed: true}", lambda team: setattr(team.status["carl"], "landed", True)),
+        ("{vehicle: anne, fails: true}", lambda team: team.status["anne"].failsafes.append("stuck")),
+        ("{vehicle: anne, charge_below: 0.2}", lambda team: setattr(team.status["anne"], "battery_remaining", 0.1)),
+        ("{vehicle: anne, explored: 0.9}", lambda team: team.nav.update(anne=NavStatus(explored=0.95))),
+    ],
+)
+def test_each_condition_holds_once_it_is_so_and_not_before(tmp_path, condition, change):
+    team = Team(f"  - {{name: a, when: {condition}}}\n", tmp_path)
+    team.step(10)
+    assert team.states() == ["WAITING"]
+    change(team)
+    team.step(30)
+    assert team.states() == ["DONE"]
+
+
+def test_a_sequence_fails_with_its_part_and_a_fallback_goes_on_to_the_next(tmp_path):
+    tree = """  - fallback:
+      - {name: first, goal: {vehicle: anne, x: 4.0, y: 1.7}}
+      - {name: second, goal: {vehicle: anne, x: 5.0, y: 1.7}}
+  - {name: after, goal: {vehicle: bert, x: 6.0, y: 1.7}}
+"""
+    team = Team(tree, tmp_path)
+    team.step(10)
+    team.give_up("anne", "walls")
+    team.step(10)
+    assert team.states() == ["RUNNING", "FAILED", "RUNNING", "WAITING"]
+    team.arrive("anne")
+    team.step(10)
+    assert team.states() == ["DONE", "FAILED", "DONE", "RUNNING"]
+    team.give_up("bert", "walls")
+    team.step(2)
+    assert team.tasks.state == TaskStatus.FAILED
+
+
+def test_parallel_tasks_run_at_once_and_the_failure_of_one_stops_the_others(tmp_path):
+    tree = """  - parallel:
+      - {name: one, goal: {vehicle: anne, x: 4.0, y: 1.7}}
+      - {name: other, goal: {vehicle: bert, x: 5.0, y: 1.7}}
+"""
+    team = Team(tree, tmp_path)
+    team.step(10)
+    assert team.states() == ["RUNNING"] * 3
+    team.arrive("anne")
+    team.step(10)
+    assert team.states() == ["RUNNING", "DONE", "RUNNING"]
+
+    team = Team(tree, tmp_path)
+    team.step(10)
+    team.give_up("bert", "walls")
+    team.step(2)
+    assert team.states() == ["FAILED", "STOPPED", "FAILED"]
+
+
+def test_a_task_ends_by_until_and_fails_after_within(tmp_path):
+    team = Team("  - {name: behind, follow: {vehicle: bert, leader: anne}, until: {vehicle: anne, reaches: {x: 4.0, y: 1.7}}}\n", tmp_path)
+    team.step(20)
+    assert team.states() == ["RUNNING"]
+    team.places["anne"] = (4.0, 1.7)
+    team.step(2)
+    assert team.states() == ["DONE"]
+
+    team = Team("  - {name: slow, within: 3.0, goal: {vehicle: anne, x: 4.0, y: 1.7}}\n", tmp_path)
+    team.step(40)
+    assert (team.states(), team.tasks.tasks[0].reason.split(":")[0]) == (["FAILED"], "not done within 3 s")
+
+
+def test_a_repeated_task_is_done_so_often(tmp_path):
+    team = Team("  - {name: twice, repeat: 2, goal: {vehicle: anne, x: 4.0, y: 1.7}}\n", tmp_path)
+    team.step(10)
+    team.arrive("anne")
+    team.step(10)
+    assert team.requests().count("goal anne") == 2
+    assert team.states() == ["RUNNING"]
+    team.arrive("anne")
+    team.step(2)
+    assert team.states() == ["DONE"]
+
+
+def test_several_that_follow_are_a_column(tmp_path):
+    team = Team("  - {follow: {vehicle: team, leader: carl, distance: 2.0}, until: {at: 90}}\n", tmp_path)
+    team.step(10)
+    assert [(v, m.vehicle, m.distance) for name, v, m in team.asked if name == "follow"] == [("anne", "carl", 2.0), ("bert", "anne", 2.0)]
+
+
+def test_one_joystick_drives_several_alike_and_they_stand_when_it_ends_or_is_stopped(tmp_path):
+    track = DriveTrack(np.array([0.0, 0.5, 1.0]), np.array([0.1, 0.2, 0.0]), np.array([0.0, -0.3, 0.0]))
+    (tmp_path / "a.csv").write_text("t,linear,angular\n")
+    drive = "  - {name: d, drive: {vehicle: team, track: a.csv}%s}\n"
+    team = Team(drive % "", tmp_path, {"a.csv": track})
+    team.step(30)
+    sent = [d["anne"] for d in team.drives if d]
+    assert all(d["anne"] == d["bert"] for d in team.drives if d)
+    assert list(dict.fromkeys(sent)) == [(0.0, 0.0), (0.1, 0.0), (0.2, -0.3)]
+    assert (sent[-1], team.states()) == ((0.0, 0.0), ["DONE"])
+
+    team = Team(drive % ", until: {at: 1.0}", tmp_path, {"a.csv": track})
+    team.step(12)
+    assert [d for d in team.drives if d][-1] == {"anne": (0.0, 0.0), "bert": (0.0, 0.0)}
+
+
+def test_a_mission_and_an_exploration_are_done_when_they_say_so(tmp_path):
+    team = Team("  - {name: fly, mission: carl}\n  - {name: look, explore: anne}\n", tmp_path)
+    team.progress["carl"] = MissionProgress(state=MissionProgress.ACTIVE, current=1, total=3)
+    team.step(12)
+    assert (team.tasks.tasks[0].reason, team.states()) == ("item 1 of 3", ["RUNNING", "WAITING"])
+    team.progress["carl"].state = MissionProgress.COMPLETE
+    team.nav["anne"] = NavStatus(job="explore", explored=0.5)
+    team.step(20)
+    assert (team.tasks.tasks[1].reason, team.states()) == ("50 % explored", ["DONE", "RUNNING"])
+    team.nav["anne"].explored = 1.0
+    team.step(40)
+    assert team.states() == ["DONE", "DONE"]
+
+
+def test_a_mission_that_is_not_there_fails(tmp_path):
+    team = Team("  - {mission: bert}\n", tmp_path)
+    team.progress["bert"] = MissionProgress(state=MissionProgress.NO_MISSION)
+    team.step(10)
+    assert team.tasks.tasks[0].reason == "bert has no mission: give its job one"
+
+
+def test_places_are_shared_out_and_each_drives_its_tour(tmp_path):
+    team = Team("  - {name: visit, visit: {vehicle: team, places: [[1, 1], [2, 2], [3, 3]]}}\n", tmp_path)
+    team.step(20)
+    tours = {vehicle: [place.x for place in message.places] for name, vehicle, message in team.asked if name == "route"}
+    assert sorted(x for tour in tours.values() for x in tour) == [1.0, 2.0, 3.0]
+    assert set(tours) == {"anne", "bert"}
+    for vehicle, tour in tours.items():
+        team.nav[vehicle].route_at = len(tour) - 1
+        team.arrive(vehicle)
+    team.step(2)
+    assert team.states() == ["DONE"]
+
+
+def test_an_executive_that_is_started_again_goes_on_behind_what_was_done(tmp_path):
+    tree = GOAL + "  - {name: then, goal: {vehicle: bert, x: 6.0, y: 1.7}}\n"
+    team = Team(tree, tmp_path)
+    team.step(10)
+    team.arrive("anne")
+    team.step(10)
+    assert team.states() == ["DONE", "RUNNING"]
+    left = team.tasks
+    team.service, team.asked = team.made(), []
+    team.service.recall(team.service.Recalls(tasks=left))
+    team.step(10)
+    assert team.requests() == ["goal bert"]
+    assert team.states() == ["DONE", "RUNNING"]
