@@ -21,6 +21,9 @@ Generated from the types in `src/uvf/models` and the measures in `launch/scoring
 SI units and radians throughout; the unit of a number stands beside it. Positions are in the `world` frame (ENU: x east, y north, z up)
 unless the meaning says otherwise. A key that is not listed here is an error, which names the nearest one that is.
 To begin, copy the nearest file in `missions/`, `worlds/` or `vehicles/`.
+
+A mission file may begin with `extends: NAME`, the path of another mission without `.yaml`: then it holds only what differs. Mappings are
+merged key by key; lists and values stand for those of the other file.
 """
 FILES: tuple[tuple[str, type[msgspec.Struct], str], ...] = (
     ("Mission file", MissionFile, "`missions/<name>.yaml`: a world, vehicles with starts and jobs, and criteria."),

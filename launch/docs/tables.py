@@ -83,7 +83,7 @@ def _kind(hint: Any, links: dict[type, str]) -> str:
     if origin is dict:
         return f"{_kind(inner[1], links)} by name"
     if origin in (Union, UnionType):
-        return " or ".join(_kind(each, links) for each in inner)
+        return " or ".join(_kind(each, links) for each in inner if each is not NoneType)
     return WORDS[kind]
 
 
