@@ -13,7 +13,7 @@ PATIENCE = 15.0  # s: an aircraft has no fix at first, a rover no map
 
 
 @dataclass(eq=False)
-class Ticket:
+class PendingRequest:
     """One thing that is asked of a vehicle, until it is accepted or has been refused for too long."""
 
     name: str
@@ -34,18 +34,18 @@ class Ticket:
 
 
 @dataclass
-class Desk:
+class PendingRequests:
     """All requests of the executive that have no answer yet."""
 
-    _open: list[Ticket] = field(default_factory=list)
+    _open: list[PendingRequest] = field(default_factory=list)
 
-    def ask(self, name: str, vehicle: str, message: Message, patience: float = PATIENCE) -> Ticket:
+    def ask(self, name: str, vehicle: str, message: Message, patience: float = PATIENCE) -> PendingRequest:
         """A new request; it goes out with this step."""
-        ticket = Ticket(name, vehicle, message, patience)
+        ticket = PendingRequest(name, vehicle, message, patience)
         self._open.append(ticket)
         return ticket
 
-    def drop(self, ticket: Ticket | None) -> None:
+    def drop(self, ticket: PendingRequest | None) -> None:
         """Asks no more; an answer that still comes is not heeded."""
         if ticket in self._open:
             self._open.remove(ticket)
@@ -58,7 +58,7 @@ class Desk:
                 if ticket is not None:
                     self._settle(t, ticket, answer)
 
-    def _settle(self, t: float, ticket: Ticket, answer: Answer[Any, Any]) -> None:
+    def _settle(self, t: float, ticket: PendingRequest, answer: Answer[Any, Any]) -> None:
         ticket.asked_at, ticket.due, ticket.reply = None, t + AGAIN, answer.reply
         ticket.accepted = answer.reply is not None and answer.reply.accepted
         ticket.reason = "" if ticket.accepted else answer.reason if answer.reply is None else answer.reply.reason

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Iterator
 
 from schemas.messages import Mode, TaskStatus
-from services.executive.situation import Situation
-from uvf.models.mission.tasks import At, Condition, Near
+from services.executive.situation import TeamSituation
+from uvf.models.mission.tasks import AtPlace, NearVehicle, TaskCondition
 
-Holds = Callable[[Situation, str], bool]
+Holds = Callable[[TeamSituation, str], bool]
 
 
-def unfulfilled(condition: Condition, now: Situation, since: float) -> str:
+def unfulfilled(condition: TaskCondition, now: TeamSituation, since: float) -> str:
     """What does not hold yet, in words; "" if all of the condition holds. since [s]: when the turn of the task came."""
     for holds, text in _about_time(condition, now, since):
         if not holds:
@@ -22,7 +22,7 @@ def unfulfilled(condition: Condition, now: Situation, since: float) -> str:
     return "" if "" in missing else f"{' or '.join(vehicles)} {missing[0]}"
 
 
-def _about_time(condition: Condition, now: Situation, since: float) -> Iterator[tuple[bool, str]]:
+def _about_time(condition: TaskCondition, now: TeamSituation, since: float) -> Iterator[tuple[bool, str]]:
     if condition.at is not None:
         yield now.t >= condition.at, f"it is {condition.at:g} s"
     if condition.after is not None:
@@ -33,7 +33,7 @@ def _about_time(condition: Condition, now: Situation, since: float) -> Iterator[
             yield record is not None and record.state == state, f"{name} {'is done' if state == TaskStatus.DONE else 'fails'}"
 
 
-def _about_vehicles(condition: Condition) -> Iterator[tuple[Holds, str]]:
+def _about_vehicles(condition: TaskCondition) -> Iterator[tuple[Holds, str]]:
     if condition.reaches is not None:
         yield _is_at(condition.reaches), f"is within {condition.reaches.within:g} m of ({condition.reaches.x:g}, {condition.reaches.y:g})"
     if condition.near is not None:
@@ -55,16 +55,16 @@ def _about_vehicles(condition: Condition) -> Iterator[tuple[Holds, str]]:
         yield _has_explored(condition.explored), f"has explored {100 * condition.explored:g} %"
 
 
-def _is_at(at: At) -> Holds:
-    def holds(now: Situation, vehicle: str) -> bool:
+def _is_at(at: AtPlace) -> Holds:
+    def holds(now: TeamSituation, vehicle: str) -> bool:
         place, distance = now.place(vehicle), now.distance(vehicle, (at.x, at.y))
         return distance is not None and distance <= at.within and (at.above is None or (place is not None and place[2] > at.above))
 
     return holds
 
 
-def _is_near(near: Near) -> Holds:
-    def holds(now: Situation, vehicle: str) -> bool:
+def _is_near(near: NearVehicle) -> Holds:
+    def holds(now: TeamSituation, vehicle: str) -> bool:
         other = now.place(near.vehicle)
         distance = None if other is None else now.distance(vehicle, other[:2])
         return distance is not None and distance <= near.within
@@ -73,25 +73,25 @@ def _is_near(near: Near) -> Holds:
 
 
 def _has_reached(item: int) -> Holds:
-    def holds(now: Situation, vehicle: str) -> bool:
+    def holds(now: TeamSituation, vehicle: str) -> bool:
         progress = now.now.progress.get(vehicle)
         return progress is not None and progress.reached >= item
 
     return holds
 
 
-def _landed(now: Situation, vehicle: str) -> bool | None:
+def _landed(now: TeamSituation, vehicle: str) -> bool | None:
     status = now.now.status.get(vehicle)
     return None if status is None else status.landed
 
 
-def _fails(now: Situation, vehicle: str) -> bool | None:
+def _fails(now: TeamSituation, vehicle: str) -> bool | None:
     status = now.now.status.get(vehicle)
     return None if status is None else bool(status.failsafes)
 
 
 def _is_low(share: float) -> Holds:
-    def holds(now: Situation, vehicle: str) -> bool:
+    def holds(now: TeamSituation, vehicle: str) -> bool:
         status = now.now.status.get(vehicle)
         return status is not None and 0.0 <= status.battery_remaining < share
 
@@ -99,7 +99,7 @@ def _is_low(share: float) -> Holds:
 
 
 def _has_explored(share: float) -> Holds:
-    def holds(now: Situation, vehicle: str) -> bool:
+    def holds(now: TeamSituation, vehicle: str) -> bool:
         nav = now.now.nav.get(vehicle)
         return nav is not None and nav.explored >= share
 

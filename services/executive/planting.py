@@ -5,13 +5,13 @@ from collections.abc import Mapping, Sequence
 from py_trees.behaviour import Behaviour
 
 from schemas.messages import Mode, TaskStatus
-from services.executive.actions.action import Action, Arm, ChangeMode
-from services.executive.actions.driving import FlyTo, Follow, Goal, Route
-from services.executive.actions.joystick import Drive, DriveTrack
-from services.executive.actions.maps import SaveMap
-from services.executive.actions.missions import DoMission, Explore
-from services.executive.actions.visiting import Visit
-from services.executive.situation import Situation
+from services.executive.actions.action import ArmAction, ChangeModeAction, TaskAction
+from services.executive.actions.driving import FlyToAction, FollowAction, GoalAction, RouteAction
+from services.executive.actions.joystick import DriveAction, DriveTrack
+from services.executive.actions.maps import SaveMapAction
+from services.executive.actions.missions import ExploreAction, MissionAction
+from services.executive.actions.visiting import VisitAction
+from services.executive.situation import TeamSituation
 from services.executive.tree import ActionNode, TaskNode, composite, nothing
 from uvf.models.mission.tasks import COMPOSITES, FollowTask, GoalTask, Task, parts_of, title_of, verb_of
 
@@ -19,7 +19,7 @@ from uvf.models.mission.tasks import COMPOSITES, FollowTask, GoalTask, Task, par
 class Planter:
     """Makes the tree of a mission, and the records of its tasks, each before its parts."""
 
-    def __init__(self, now: Situation, tracks: Mapping[str, DriveTrack]) -> None:
+    def __init__(self, now: TeamSituation, tracks: Mapping[str, DriveTrack]) -> None:
         """tracks: recorded drives by their paths in the mission file."""
         self._now, self._tracks = now, tracks
         self.records: list[TaskStatus] = []
@@ -47,41 +47,41 @@ class Planter:
         self.nodes.insert(place, node)
         return node
 
-    def _actions(self, task: Task) -> list[Action]:
+    def _actions(self, task: Task) -> list[TaskAction]:
         """What a task does, side by side; each vehicle by itself where they do not depend on each other."""
         who = self._now.vehicles
         if task.arm is not None or task.disarm is not None:
-            return [Arm(name, task.arm is not None) for name in who(task.arm or task.disarm or [])]
+            return [ArmAction(name, task.arm is not None) for name in who(task.arm or task.disarm or [])]
         if task.mode is not None:
-            return [ChangeMode(name, Mode.Value(f"MODE_{task.mode.mode.upper()}")) for name in who(task.mode.vehicle)]
+            return [ChangeModeAction(name, Mode.Value(f"MODE_{task.mode.mode.upper()}")) for name in who(task.mode.vehicle)]
         if task.mission is not None:
-            return [DoMission(name) for name in who(task.mission)]
+            return [MissionAction(name) for name in who(task.mission)]
         if task.explore is not None:
-            return [Explore(name) for name in who(task.explore)]
+            return [ExploreAction(name) for name in who(task.explore)]
         if task.drive is not None:
-            return [Drive(who(task.drive.vehicle), self._tracks[task.drive.track])]
+            return [DriveAction(who(task.drive.vehicle), self._tracks[task.drive.track])]
         if task.save_map is not None:
             wanted, names = task.save_map, who(task.save_map.vehicle)
-            return [SaveMap(name, wanted.name if len(names) == 1 else f"{wanted.name}_{name}", wanted.layer) for name in names]
+            return [SaveMapAction(name, wanted.name if len(names) == 1 else f"{wanted.name}_{name}", wanted.layer) for name in names]
         return self._drives(task)
 
-    def _drives(self, task: Task) -> list[Action]:
+    def _drives(self, task: Task) -> list[TaskAction]:
         who = self._now.vehicles
         if task.goal is not None:
             return [self._goal(name, task.goal) for name in who(task.goal.vehicle)]
         if task.route is not None:
-            return [Route(name, task.route.places, task.route.kind) for name in who(task.route.vehicle)]
+            return [RouteAction(name, task.route.places, task.route.kind) for name in who(task.route.vehicle)]
         if task.visit is not None:
-            return [Visit(who(task.visit.vehicle), task.visit.places)]
+            return [VisitAction(who(task.visit.vehicle), task.visit.places)]
         if task.follow is not None:
             return self._column(task.follow)
         return []
 
-    def _goal(self, name: str, goal: GoalTask) -> Action:
-        return FlyTo(name, (goal.x, goal.y, goal.z)) if self._now.flies(name) else Goal(name, (goal.x, goal.y), goal.yaw)
+    def _goal(self, name: str, goal: GoalTask) -> TaskAction:
+        return FlyToAction(name, (goal.x, goal.y, goal.z)) if self._now.flies(name) else GoalAction(name, (goal.x, goal.y), goal.yaw)
 
-    def _column(self, follow: FollowTask) -> list[Action]:
+    def _column(self, follow: FollowTask) -> list[TaskAction]:
         """Each behind the one before."""
         names = self._now.vehicles(follow.vehicle)
         leaders = [follow.leader, *names[:-1]]
-        return [Follow(name, leader, follow.distance) for name, leader in zip(names, leaders, strict=True)]
+        return [FollowAction(name, leader, follow.distance) for name, leader in zip(names, leaders, strict=True)]

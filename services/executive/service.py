@@ -10,7 +10,7 @@ from services.executive import interface
 from services.executive.actions.joystick import DriveTrack
 from services.executive.interface import SOURCE
 from services.executive.planting import Planter
-from services.executive.situation import Situation
+from services.executive.situation import TeamSituation
 from services.executive.tree import STATES
 from uvf.models.mission.tasks import Task
 from uvf.models.scenario import MissionVehicle
@@ -48,7 +48,7 @@ class Executive(Service):
         tracks: Mapping[str, DriveTrack],
     ) -> None:
         """tracks: recorded drives by their paths in the mission file."""
-        self._now = Situation(members, roles)
+        self._now = TeamSituation(members, roles)
         planter = Planter(self._now, tracks)
         self._tree = planter.tree(tasks)
         self._records, self._nodes = planter.records, planter.nodes

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from math import hypot
 
 from schemas.messages import DriveCommand, Mode, TaskStatus
-from services.executive.asking import Desk
+from services.executive.asking import PendingRequests
 from services.executive.interface import Inputs
 from uvf.models.mission.task_check import members_of
 from uvf.models.mission.tasks import Who
@@ -15,12 +15,12 @@ Point = tuple[float, float]
 
 
 @dataclass
-class Situation:
+class TeamSituation:
     """One step at ``t`` [s, simulation]."""
 
     members: Mapping[str, MissionVehicle]
     roles: Mapping[str, list[str]]
-    desk: Desk = field(default_factory=Desk)
+    desk: PendingRequests = field(default_factory=PendingRequests)
     records: dict[str, TaskStatus] = field(default_factory=dict)
     """Of the tasks that have names."""
     t: float = 0.0

@@ -12,9 +12,9 @@ from py_trees.composites import Composite, Parallel, Selector, Sequence
 from py_trees.decorators import Decorator
 
 from schemas.messages import TaskStatus
-from services.executive.actions.action import Action, Failed
+from services.executive.actions.action import Failed, TaskAction
 from services.executive.conditions import unfulfilled
-from services.executive.situation import Situation
+from services.executive.situation import TeamSituation
 from uvf.models.mission.tasks import Task
 
 STATES = {Status.RUNNING: TaskStatus.RUNNING, Status.SUCCESS: TaskStatus.DONE, Status.FAILURE: TaskStatus.FAILED}
@@ -23,7 +23,7 @@ STATES = {Status.RUNNING: TaskStatus.RUNNING, Status.SUCCESS: TaskStatus.DONE, S
 class ActionNode(Behaviour):
     """A leaf: an action of a vehicle."""
 
-    def __init__(self, action: Action, now: Situation) -> None:
+    def __init__(self, action: TaskAction, now: TeamSituation) -> None:
         super().__init__(type(action).__name__)
         self._action, self._now = action, now
 
@@ -51,7 +51,7 @@ class ActionNode(Behaviour):
 class TaskNode(Decorator):
     """A task: waits for ``when``, ends with ``until``, fails after ``within``, repeats, and keeps the record of it."""
 
-    def __init__(self, task: Task, child: Behaviour, record: TaskStatus, now: Situation) -> None:
+    def __init__(self, task: Task, child: Behaviour, record: TaskStatus, now: TeamSituation) -> None:
         super().__init__(record.name, child)
         self._task, self._record, self._now = task, record, now
         self._turn = self._begun = 0.0

@@ -3,54 +3,54 @@
 from typing import Protocol
 
 from schemas.messages import ArmRequest, Mode, ModeRequest
-from services.executive.asking import Ticket
+from services.executive.asking import PendingRequest
 from services.executive.interface import SOURCE
-from services.executive.situation import Situation
+from services.executive.situation import TeamSituation
 
 
 class Failed(Exception):
     """A task cannot be done; the text says why."""
 
 
-class Action(Protocol):
+class TaskAction(Protocol):
     """Something that is done in several steps."""
 
     reason: str
     """What it does now, in words."""
 
-    def begin(self, now: Situation) -> None:
+    def begin(self, now: TeamSituation) -> None:
         """Begins, perhaps not for the first time."""
 
-    def step(self, now: Situation) -> bool:
+    def step(self, now: TeamSituation) -> bool:
         """One step; whether it is done. Raises Failed."""
         ...
 
-    def stop(self, now: Situation) -> None:
+    def stop(self, now: TeamSituation) -> None:
         """It is needed no more, before it was done."""
 
 
-class Asking:
+class RequestAction:
     """Base of actions that ask a vehicle for something."""
 
     def __init__(self, vehicle: str) -> None:
         self.vehicle = vehicle
         self.reason = ""
-        self._ticket: Ticket | None = None
+        self._ticket: PendingRequest | None = None
 
-    def begin(self, now: Situation) -> None:
+    def begin(self, now: TeamSituation) -> None:
         """Begins with nothing asked."""
         self.reason, self._ticket = "", None
 
-    def step(self, now: Situation) -> bool:
+    def step(self, now: TeamSituation) -> bool:
         """One step; whether it is done. Raises Failed."""
         raise NotImplementedError
 
-    def stop(self, now: Situation) -> None:
+    def stop(self, now: TeamSituation) -> None:
         """Asks no more."""
         now.desk.drop(self._ticket)
         self._ticket = None
 
-    def _accepted(self, now: Situation, ticket: Ticket) -> bool:
+    def _accepted(self, now: TeamSituation, ticket: PendingRequest) -> bool:
         """Whether what was asked is accepted. Raises Failed once it is refused for good."""
         self._ticket = ticket
         self.reason = ticket.reason or f"asks {self.vehicle}"
@@ -60,14 +60,14 @@ class Asking:
         return ticket.accepted
 
 
-class Arm(Asking):
+class ArmAction(RequestAction):
     """Arms or disarms a vehicle."""
 
     def __init__(self, vehicle: str, arm: bool) -> None:
         super().__init__(vehicle)
         self._arm = arm
 
-    def step(self, now: Situation) -> bool:
+    def step(self, now: TeamSituation) -> bool:
         """Whether the vehicle is armed, or disarmed."""
         if now.is_armed(self.vehicle) is self._arm and self._ticket is None:
             return True
@@ -75,14 +75,14 @@ class Arm(Asking):
         return self._accepted(now, ticket) and now.is_armed(self.vehicle) is self._arm
 
 
-class ChangeMode(Asking):
+class ChangeModeAction(RequestAction):
     """Changes the mode of a vehicle."""
 
     def __init__(self, vehicle: str, mode: int) -> None:
         super().__init__(vehicle)
         self._mode = mode
 
-    def step(self, now: Situation) -> bool:
+    def step(self, now: TeamSituation) -> bool:
         """Whether the vehicle has been in the mode since it was asked; takeoff and landing may be over already."""
         if now.mode(self.vehicle) == self._mode and self._ticket is None:
             return True
@@ -90,21 +90,21 @@ class ChangeMode(Asking):
         return self._accepted(now, ticket)
 
 
-class Engage(Asking):
+class EngageAction(RequestAction):
     """Brings a vehicle to where it takes orders: armed, and in a mode. It is done once; a mode that others choose later is theirs."""
 
     def __init__(self, vehicle: str, mode: int) -> None:
         super().__init__(vehicle)
-        self._parts: tuple[Asking, ...] = (Arm(vehicle, True), ChangeMode(vehicle, mode))
+        self._parts: tuple[RequestAction, ...] = (ArmAction(vehicle, True), ChangeModeAction(vehicle, mode))
         self._at = 0
 
-    def begin(self, now: Situation) -> None:
+    def begin(self, now: TeamSituation) -> None:
         """Begins with arming."""
         self._at = 0
         for part in self._parts:
             part.begin(now)
 
-    def step(self, now: Situation) -> bool:
+    def step(self, now: TeamSituation) -> bool:
         """Whether the vehicle is armed and in the mode."""
         while self._at < len(self._parts) and self._parts[self._at].step(now):
             self._at += 1
@@ -112,7 +112,7 @@ class Engage(Asking):
         self.reason = "" if done else self._parts[self._at].reason
         return done
 
-    def stop(self, now: Situation) -> None:
+    def stop(self, now: TeamSituation) -> None:
         """Asks no more."""
         for part in self._parts:
             part.stop(now)

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from math import nan
 
 from schemas.messages import FollowRequest, GoalRequest, Mode, NavStatus, RouteRequest, Vector3
-from services.executive.actions.action import Asking, Engage, Failed
+from services.executive.actions.action import EngageAction, Failed, RequestAction
 from services.executive.interface import SOURCE
-from services.executive.situation import Situation
+from services.executive.situation import TeamSituation
 
 Point = tuple[float, float]
 
@@ -16,7 +16,7 @@ TAKEN_WITHIN = 3.0  # s, after which a planner that has accepted a goal says so 
 CIRCLING = 1.5  # radii of the circle that an aircraft holds on, within which it is at its goal
 
 
-class Errand(Asking):
+class ErrandAction(RequestAction):
     """Base of what the planner of a ground vehicle is asked for and reports on."""
 
     request = "goal"
@@ -24,11 +24,11 @@ class Errand(Asking):
 
     def __init__(self, vehicle: str) -> None:
         super().__init__(vehicle)
-        self._engage = Engage(vehicle, Mode.MODE_MISSION)
+        self._engage = EngageAction(vehicle, Mode.MODE_MISSION)
         self._engaged = self._taken = False
         self._accepted_at: float | None = None
 
-    def begin(self, now: Situation) -> None:
+    def begin(self, now: TeamSituation) -> None:
         """Begins anew: the vehicle is armed and told where to go."""
         super().begin(now)
         self._engage.begin(now)
@@ -36,12 +36,12 @@ class Errand(Asking):
         self._accepted_at = None
         now.given_up.pop(self.vehicle, None)
 
-    def stop(self, now: Situation) -> None:
+    def stop(self, now: TeamSituation) -> None:
         """Asks no more; what the planner has taken is cancelled by what it is asked for next."""
         super().stop(now)
         self._engage.stop(now)
 
-    def step(self, now: Situation) -> bool:
+    def step(self, now: TeamSituation) -> bool:
         """Whether the vehicle is there. Raises Failed when the planner has given it up, or does something else."""
         if not self._engaged:
             self._engaged = self._engage.step(now)
@@ -53,7 +53,7 @@ class Errand(Asking):
             return False
         return self._followed(now, self._accepted_at)
 
-    def _followed(self, now: Situation, since: float) -> bool:
+    def _followed(self, now: TeamSituation, since: float) -> bool:
         status = now.now.nav.get(self.vehicle)
         if status is None:
             self.reason = f"nothing is heard of {self.vehicle}'s planner"
@@ -77,7 +77,7 @@ class Errand(Asking):
         return status.state == NavStatus.REACHED
 
 
-class Goal(Errand):
+class GoalAction(ErrandAction):
     """A ground vehicle drives to a place."""
 
     def __init__(self, vehicle: str, point: Point, yaw: float | None) -> None:
@@ -92,7 +92,7 @@ class Goal(Errand):
         return abs(status.goal.x - self._point[0]) <= SAME and abs(status.goal.y - self._point[1]) <= SAME
 
 
-class Route(Errand):
+class RouteAction(ErrandAction):
     """A ground vehicle drives to several places."""
 
     request = "route"
@@ -113,7 +113,7 @@ class Route(Errand):
         return self._kind != "patrol" and last and status.state == NavStatus.REACHED
 
 
-class Follow(Errand):
+class FollowAction(ErrandAction):
     """A ground vehicle drives behind another one, until it is stopped."""
 
     request = "follow"
@@ -130,7 +130,7 @@ class Follow(Errand):
         return False
 
 
-class FlyTo(Asking):
+class FlyToAction(RequestAction):
     """An aircraft flies to a place and circles there."""
 
     def __init__(self, vehicle: str, place: tuple[float, float, float]) -> None:
@@ -138,12 +138,12 @@ class FlyTo(Asking):
         self._place = place
         self._is_taken = False
 
-    def begin(self, now: Situation) -> None:
+    def begin(self, now: TeamSituation) -> None:
         """Begins with asking for it."""
         super().begin(now)
         self._is_taken = False
 
-    def step(self, now: Situation) -> bool:
+    def step(self, now: TeamSituation) -> bool:
         """Whether it circles there. Raises Failed when the goal is refused, or the aircraft does something else."""
         if not self._is_taken:
             x, y, z = self._place

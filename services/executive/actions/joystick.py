@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import DriveCommand, Mode
-from services.executive.actions.action import Engage
-from services.executive.situation import Situation
+from services.executive.actions.action import EngageAction
+from services.executive.situation import TeamSituation
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import stamp
 
@@ -64,22 +64,22 @@ def _numbers(path: Path, line: int, row: Sequence[str]) -> list[float]:
     return numbers
 
 
-class Drive:
+class DriveAction:
     """Drives vehicles by one track, all alike."""
 
     def __init__(self, vehicles: Sequence[str], track: DriveTrack) -> None:
         self._vehicles, self._track = vehicles, track
-        self._engages = [Engage(vehicle, Mode.MODE_MANUAL) for vehicle in vehicles]
+        self._engages = [EngageAction(vehicle, Mode.MODE_MANUAL) for vehicle in vehicles]
         self._begun: float | None = None
         self.reason = ""
 
-    def begin(self, now: Situation) -> None:
+    def begin(self, now: TeamSituation) -> None:
         """Begins with taking the vehicles over."""
         self._begun = None
         for engage in self._engages:
             engage.begin(now)
 
-    def step(self, now: Situation) -> bool:
+    def step(self, now: TeamSituation) -> bool:
         """Whether the track is at its end; it begins once all vehicles are armed and driven by hand."""
         if self._begun is None:
             ready = [engage.step(now) for engage in self._engages]
@@ -94,7 +94,7 @@ class Drive:
         now.drive.update(dict.fromkeys(self._vehicles, command))
         return velocity is None
 
-    def stop(self, now: Situation) -> None:
+    def stop(self, now: TeamSituation) -> None:
         """The vehicles stand."""
         for engage in self._engages:
             engage.stop(now)

@@ -7,26 +7,26 @@ import numpy as np
 
 from schemas.messages import PreviewRequest, Vector3
 from services.executive.actions.action import Failed
-from services.executive.actions.driving import Route
-from services.executive.asking import Ticket
+from services.executive.actions.driving import RouteAction
+from services.executive.asking import PendingRequest
 from services.executive.interface import SOURCE
-from services.executive.situation import Situation
+from services.executive.situation import TeamSituation
 from uvf.planning.assignment import assign
 
 Point = tuple[float, float]
 Start = Point | None
 
 
-class Visit:
+class VisitAction:
     """A team visits places: each planner says how long each way would take, then each vehicle drives its tour."""
 
     def __init__(self, vehicles: Sequence[str], places: Sequence[Point]) -> None:
         self._vehicles, self._places = vehicles, places
-        self._tickets: dict[tuple[str, Start, Point], Ticket] = {}
-        self._routes: list[Route] | None = None
+        self._tickets: dict[tuple[str, Start, Point], PendingRequest] = {}
+        self._routes: list[RouteAction] | None = None
         self.reason = ""
 
-    def begin(self, now: Situation) -> None:
+    def begin(self, now: TeamSituation) -> None:
         """Begins with asking for all ways."""
         self._routes, self.reason = None, "asks how long the ways are"
         starts: tuple[Start, ...] = (None, *self._places)
@@ -38,7 +38,7 @@ class Visit:
             if start != goal
         }
 
-    def step(self, now: Situation) -> bool:
+    def step(self, now: TeamSituation) -> bool:
         """Whether all places have been visited. Raises Failed where one cannot be reached by anybody, or a tour fails."""
         if self._routes is None:
             if not all(ticket.accepted or ticket.refused for ticket in self._tickets.values()):
@@ -51,14 +51,14 @@ class Visit:
         self.reason = "; ".join(f"{route.vehicle}: {route.reason}" for route in self._routes)
         return not self._routes
 
-    def stop(self, now: Situation) -> None:
+    def stop(self, now: TeamSituation) -> None:
         """Asks no more."""
         for ticket in self._tickets.values():
             now.desk.drop(ticket)
         for route in self._routes or ():
             route.stop(now)
 
-    def _shared_out(self) -> list[Route]:
+    def _shared_out(self) -> list[RouteAction]:
         to_goals = np.array([[self._time(vehicle, None, goal) for goal in self._places] for vehicle in self._vehicles])
         between = np.array(
             [[[self._time(vehicle, start, goal) for goal in self._places] for start in self._places] for vehicle in self._vehicles]
@@ -68,7 +68,7 @@ class Visit:
             x, y = self._places[found.unreachable[0]]
             raise Failed(f"nobody can go to ({x:g}, {y:g})")
         tours = zip(self._vehicles, found.tours, strict=True)
-        return [Route(vehicle, [self._places[goal] for goal in tour], "waypoints") for vehicle, tour in tours if tour]
+        return [RouteAction(vehicle, [self._places[goal] for goal in tour], "waypoints") for vehicle, tour in tours if tour]
 
     def _time(self, vehicle: str, start: Start, goal: Point) -> float:
         """s; infinite where there is no way."""

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from uvf.models.mission.tasks import COMPOSITES, DEEPEST, MOST_TASKS, VERBS, Condition, Task, Who, parts_of, verb_of, walk
+from uvf.models.mission.tasks import COMPOSITES, DEEPEST, MOST_TASKS, VERBS, Task, TaskCondition, Who, parts_of, verb_of, walk
 from uvf.models.yaml_data import BadInput, FileLocation, nearest
 
 Roles = Mapping[str, list[str]]
@@ -95,7 +95,7 @@ def _check_who(who: Who, roles: Roles, vehicles: Mapping[str, object], place: Fi
             raise BadInput(f"{place}: no vehicle or role '{name}'; {nearest(name, {*vehicles, *roles})}")
 
 
-def _check_condition(condition: Condition, known: set[str], place: FileLocation) -> None:
+def _check_condition(condition: TaskCondition, known: set[str], place: FileLocation) -> None:
     about = [name for name in ABOUT_VEHICLES if getattr(condition, name) is not None]
     if about and condition.vehicle is None:
         raise BadInput(f"{place.at(about[0])}: whose? give the vehicle or role")

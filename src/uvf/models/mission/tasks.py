@@ -21,7 +21,7 @@ COMPOSITES = ("sequence", "parallel", "fallback")
 MOST_TASKS, DEEPEST = 200, 8
 
 
-class At(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class AtPlace(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A place that a vehicle is at: within a distance of it over the ground."""
 
     x: Annotated[Metres, key("m", "East of the world's origin.")]
@@ -30,14 +30,14 @@ class At(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     above: Annotated[Metres | None, key("m", "Height above the world's origin that must be exceeded, too.")] = None
 
 
-class Near(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class NearVehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Another vehicle that a vehicle is near to."""
 
     vehicle: Annotated[str, plain("The other vehicle.")]
     within: Annotated[Distance, key("m", "Horizontal distance.")]
 
 
-class Condition(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class TaskCondition(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What must hold; of several keys all must. Those about a vehicle look at each one of ``vehicle``: one that fulfils them is enough."""
 
     at: Annotated[Seconds | None, key("s", "Simulation time that has come.")] = None
@@ -45,8 +45,8 @@ class Condition(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     task: Annotated[str | None, plain("Name of a task that has been done.")] = None
     failed: Annotated[str | None, plain("Name of a task that has failed.")] = None
     vehicle: Annotated[Who | None, plain("Vehicles or roles that the following keys are about.")] = None
-    reaches: Annotated[At | None, plain("The vehicle is there.")] = None
-    near: Annotated[Near | None, plain("The vehicle is near another one.")] = None
+    reaches: Annotated[AtPlace | None, plain("The vehicle is there.")] = None
+    near: Annotated[NearVehicle | None, plain("The vehicle is near another one.")] = None
     item: Annotated[ItemIndex | None, key("", "The vehicle has reached this mission item; the first is 0.")] = None
     mode: Annotated[ModeName | None, plain("The vehicle is in this mode.")] = None
     landed: Annotated[bool | None, plain("The vehicle stands on the ground, or does not.")] = None
@@ -124,8 +124,8 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     name: Annotated[str, plain("Name in lists and on the page, for conditions and criteria. Left out: what it does.")] = ""
-    when: Annotated[Condition | None, plain("It begins once this holds. Left out: when its turn comes.")] = None
-    until: Annotated[Condition | None, plain("It is done as soon as this holds, however far it is.")] = None
+    when: Annotated[TaskCondition | None, plain("It begins once this holds. Left out: when its turn comes.")] = None
+    until: Annotated[TaskCondition | None, plain("It is done as soon as this holds, however far it is.")] = None
     within: Annotated[Distance | None, key("s", "It has failed when it is not done within this time from its beginning.")] = None
     repeat: Annotated[int, Meta(ge=1, le=10_000), key("", "How often it is done.")] = 1
     sequence: Annotated["list[Task] | None", plain("Tasks done one after the other. Fails as soon as one fails.")] = None
