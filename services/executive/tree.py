@@ -1,6 +1,6 @@
 """The behaviour tree of a mission: py_trees' composites, and nodes that begin, end and fail as tasks say.
 
-py_trees by D. Stonier et al.; behaviour trees: M. Colledanchise, P. Oegren, Behavior Trees in Robotics and AI, 2018.
+py_trees by D. Stonier et al.; behaviour trees: Colledanchise & Ögren 2018.
 """
 
 from collections.abc import Iterator
