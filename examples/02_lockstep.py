@@ -16,5 +16,5 @@ with tempfile.TemporaryDirectory() as folder:
     result = run_lockstep(site, until=10.0, log=Path(folder, "log.mcap"))
 
 for verdict in result.verdicts:
-    print(f"{verdict.criterion.vehicle:8} {verdict.criterion.measure:16} {verdict.value:8.3g}   wanted {verdict.limits}")
+    print(f"{verdict.subject:8} {verdict.criterion.measure:16} {verdict.found.value:8.3g}   wanted {verdict.limits}")
 print(f"{result.messages} messages, {result.factor:.1f} times real time, hash {result.log_hash[:16]}")

@@ -14,4 +14,4 @@ def flown(tmp_path_factory):
 
 def test_every_place_is_passed_in_its_direction(flown):
     assert len(flown.verdicts) == 3
-    assert {v.criterion.measure: v.value for v in flown.verdicts if not v.passed} == {}
+    assert {v.criterion.measure: v.found for v in flown.verdicts if not v.passed} == {}

@@ -15,4 +15,4 @@ def circuit(tmp_path_factory):
 
 def test_every_criterion_of_the_circuit_holds(circuit):
     assert len(circuit.verdicts) == 4
-    assert {v.criterion.measure: v.value for v in circuit.verdicts if not v.passed} == {}
+    assert {v.criterion.measure: v.found for v in circuit.verdicts if not v.passed} == {}
