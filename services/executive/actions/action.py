@@ -116,3 +116,34 @@ class EngageAction(RequestAction):
         """Asks no more."""
         for part in self._parts:
             part.stop(now)
+
+
+class EngagedAction(RequestAction):
+    """Base of what a vehicle does once it is armed and in mode Mission."""
+
+    def __init__(self, vehicle: str) -> None:
+        super().__init__(vehicle)
+        self._engage = EngageAction(vehicle, Mode.MODE_MISSION)
+        self._engaged = False
+
+    def begin(self, now: TeamSituation) -> None:
+        """Begins with arming the vehicle."""
+        super().begin(now)
+        self._engage.begin(now)
+        self._engaged = False
+
+    def stop(self, now: TeamSituation) -> None:
+        """Asks no more; the vehicle goes on until somebody tells it something else."""
+        super().stop(now)
+        self._engage.stop(now)
+
+    def step(self, now: TeamSituation) -> bool:
+        """Whether it is done. Raises Failed where it cannot be."""
+        if not self._engaged:
+            self._engaged = self._engage.step(now)
+            self.reason = self._engage.reason
+            return False
+        return self._carry_out(now)
+
+    def _carry_out(self, now: TeamSituation) -> bool:
+        raise NotImplementedError

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from math import nan
 
-from schemas.messages import FollowRequest, GoalRequest, Mode, NavStatus, RouteRequest, Vector3
-from services.executive.actions.action import EngageAction, Failed, RequestAction
+from schemas.messages import FollowRequest, GoalRequest, NavStatus, RouteRequest, Vector3
+from services.executive.actions.action import EngagedAction, Failed, RequestAction
 from services.executive.interface import SOURCE
 from services.executive.situation import TeamSituation
 
@@ -16,7 +16,7 @@ TAKEN_WITHIN = 3.0  # s, after which a planner that has accepted a goal says so 
 CIRCLING = 1.5  # radii of the circle that an aircraft holds on, within which it is at its goal
 
 
-class ErrandAction(RequestAction):
+class ErrandAction(EngagedAction):
     """Base of what the planner of a ground vehicle is asked for and reports on."""
 
     request = "goal"
@@ -24,29 +24,18 @@ class ErrandAction(RequestAction):
 
     def __init__(self, vehicle: str) -> None:
         super().__init__(vehicle)
-        self._engage = EngageAction(vehicle, Mode.MODE_MISSION)
-        self._engaged = self._taken = False
+        self._taken = False
         self._accepted_at: float | None = None
 
     def begin(self, now: TeamSituation) -> None:
         """Begins anew: the vehicle is armed and told where to go."""
         super().begin(now)
-        self._engage.begin(now)
-        self._engaged = self._taken = False
+        self._taken = False
         self._accepted_at = None
         now.given_up.pop(self.vehicle, None)
 
-    def stop(self, now: TeamSituation) -> None:
-        """Asks no more; what the planner has taken is cancelled by what it is asked for next."""
-        super().stop(now)
-        self._engage.stop(now)
-
-    def step(self, now: TeamSituation) -> bool:
+    def _carry_out(self, now: TeamSituation) -> bool:
         """Whether the vehicle is there. Raises Failed when the planner has given it up, or does something else."""
-        if not self._engaged:
-            self._engaged = self._engage.step(now)
-            self.reason = self._engage.reason
-            return False
         if self._accepted_at is None:
             if self._accepted(now, self._ticket or now.desk.ask(self.request, self.vehicle, self._message())):
                 self._accepted_at, self._ticket = now.t, None

@@ -1,48 +1,17 @@
 """What a vehicle does by itself once it is told to: the mission of its job, and exploring."""
 
-from schemas.messages import MissionProgress, Mode
-from services.executive.actions.action import EngageAction, Failed, RequestAction
+from schemas.messages import MissionProgress
+from services.executive.actions.action import EngagedAction, Failed
 from services.executive.situation import TeamSituation
 
 SETTLED = 3.0  # s for which nothing is left to explore, before it is believed: the map still grows
 WHOLE = 0.999
 
 
-class AutonomousAction(RequestAction):
-    """Base of what mode Mission leads to."""
-
-    def __init__(self, vehicle: str) -> None:
-        super().__init__(vehicle)
-        self._engage = EngageAction(vehicle, Mode.MODE_MISSION)
-        self._engaged = False
-
-    def begin(self, now: TeamSituation) -> None:
-        """Begins with arming the vehicle."""
-        super().begin(now)
-        self._engage.begin(now)
-        self._engaged = False
-
-    def stop(self, now: TeamSituation) -> None:
-        """Asks no more; the vehicle goes on until somebody tells it something else."""
-        super().stop(now)
-        self._engage.stop(now)
-
-    def step(self, now: TeamSituation) -> bool:
-        """Whether it is done. Raises Failed where it cannot be."""
-        if not self._engaged:
-            self._engaged = self._engage.step(now)
-            self.reason = self._engage.reason
-            return False
-        return self._is_done(now)
-
-    def _is_done(self, now: TeamSituation) -> bool:
-        raise NotImplementedError
-
-
-class MissionAction(AutonomousAction):
+class MissionAction(EngagedAction):
     """The mission of the vehicle's job, to its last item."""
 
-    def _is_done(self, now: TeamSituation) -> bool:
+    def _carry_out(self, now: TeamSituation) -> bool:
         progress = now.now.progress.get(self.vehicle)
         if progress is None:
             self.reason = f"nothing is heard of {self.vehicle}'s mission"
@@ -53,7 +22,7 @@ class MissionAction(AutonomousAction):
         return progress.state == MissionProgress.COMPLETE
 
 
-class ExploreAction(AutonomousAction):
+class ExploreAction(EngagedAction):
     """Exploring, until every place is known."""
 
     def __init__(self, vehicle: str) -> None:
@@ -65,7 +34,7 @@ class ExploreAction(AutonomousAction):
         super().begin(now)
         self._since = None
 
-    def _is_done(self, now: TeamSituation) -> bool:
+    def _carry_out(self, now: TeamSituation) -> bool:
         status = now.now.nav.get(self.vehicle)
         if status is None:
             return False
