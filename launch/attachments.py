@@ -1,4 +1,4 @@
-"""The files that a log brings along, so that it can be replayed alone: mission, recorded drives, world, vehicles."""
+"""The files that a log brings along, so that it can be replayed alone: mission, recorded drives, programs, world, vehicles."""
 
 import os
 from collections.abc import Mapping
@@ -29,9 +29,14 @@ def attachments(site: Scenario) -> dict[str, bytes]:
 
 
 def _named_files(site: Scenario) -> dict[str, Path]:
-    """The recorded drives of a mission, by the names that they have as attachments."""
+    """The recorded drives and the programs of a mission, by the names that they have as attachments."""
     tracks = {task.drive.track for task in walk(site.mission.tasks) if task.drive is not None}
-    return {f"tracks/{n}-{Path(track).name}": site.mission_path.parent / track for n, track in enumerate(sorted(tracks))}
+    programs = {member.entry.program for member in site.members.values() if member.entry.program is not None}
+    return {
+        f"{folder}/{n}-{Path(name).name}": site.mission_path.parent / name
+        for folder, names in (("tracks", tracks), ("programs", programs))
+        for n, name in enumerate(sorted(names))
+    }
 
 
 def _mission_text(site: Scenario, named: Mapping[str, Path]) -> bytes:

@@ -13,7 +13,8 @@ from uvf.runtime.contract.instances import Build, ServiceInstance
 @dataclass(frozen=True)
 class Kind:
     """A kind of service. ``build``: module with ``build(site)``; ``needs``: the vehicles without which it has no work, or
-    ``asked``: one that has parameters for it, or ``team``: two that draw maps; or ``tasks``: those of the mission.
+    ``asked``: one that has parameters for it, ``program``: one that brings a program along, or ``team``: two that draw
+    maps; or ``tasks``: those of the mission.
 
     ``nice``: its nice value, so that time keepers (router, conductor, simulators) come first when processors are few.
     """
@@ -21,7 +22,7 @@ class Kind:
     name: str
     build: str
     about: str
-    needs: Literal["ground", "fixed_wing", "any", "asked", "team", "tasks"] = "any"
+    needs: Literal["ground", "fixed_wing", "any", "asked", "program", "team", "tasks"] = "any"
     clock: Literal["sim", "wall"] = "sim"
     simulator: bool = False
     nice: int = 0
@@ -37,6 +38,7 @@ KINDS = (
     Kind("planner", "services.planner.build", "exploration, paths, tracking", "ground", nice=2),
     Kind("autopilot", "services.autopilot.build", "command multiplexer, estimator, guidance, control, modes", nice=2),
     Kind("executive", "services.executive.build", "the tasks of the mission", "tasks", nice=5),
+    Kind("programs", "services.programs.build", "the vehicles' own programs", "program", nice=5),
     Kind("mavlink", "services.autopilot.mavlink.build", "MAVLink over UDP for ground stations", clock="wall", nice=5),
     Kind("gcs", "services.gcs.build", "the page at http://127.0.0.1:8080", clock="wall", nice=10),
 )
@@ -57,6 +59,7 @@ def needed(site: Scenario) -> list[Kind]:
     asked = {name for member in site.members.values() for name in member.file.params}
     mapping = [m for m in site.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None]
     kinds |= {"team"} if len(mapping) > 1 else set()
+    kinds |= {"program"} if any(member.entry.program for member in site.members.values()) else set()
     kinds |= {"tasks"} if site.mission.tasks else set()
     return [k for k in KINDS if k.needs in ("any", *kinds) or (k.needs == "asked" and k.name in asked)]
 

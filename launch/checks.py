@@ -1,6 +1,6 @@
 """``uvf check``: the wiring and the vehicles of a mission, before anything is started."""
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -65,6 +65,7 @@ def check_params(site: Scenario, hosts: Sequence[ServiceInstance]) -> None:
 
 def wiring_problems(site: Scenario, hosts: Sequence[ServiceInstance]) -> Iterator[str]:
     """Yields wiring problems: one writer per key, every required input fed, every sensor simulated, steps on the clock's ticks."""
+    yield from _names(hosts)
     yield from _writers(hosts)
     yield from _inputs(site, hosts)
     yield from _unread_sensors(site, hosts)
@@ -75,6 +76,14 @@ def _owners(host: ServiceInstance, topic: Topic[Any]) -> Sequence[str]:
     if not topic.per_vehicle:
         return (SYSTEM,)
     return (host.vehicle,) if host.vehicle else host.writes_for
+
+
+def _names(hosts: Sequence[ServiceInstance]) -> Iterator[str]:
+    """No two services of a vehicle have one name: parameters, health and logs go by it."""
+    count = Counter((host.vehicle or SYSTEM, host.service.name) for host in hosts)
+    for (owner, name), times in sorted(count.items()):
+        if times > 1:
+            yield f"{owner}: {times} services are called '{name}'; rename one"
 
 
 def _writers(hosts: Sequence[ServiceInstance]) -> Iterator[str]:

@@ -18,7 +18,8 @@ SITE = load_scenario(ROOT / "missions" / "demo.yaml")
 ASKING = load_scenario(ROOT / "missions" / "mapping.yaml")
 TEAM = load_scenario(ROOT / "missions" / "team.yaml")
 TASKS = load_scenario(ROOT / "missions" / "ugv2_slam.yaml")
-SITES = {"asked": ASKING, "team": TEAM, "tasks": TASKS}
+PROGRAM = load_scenario(ROOT / "missions" / "ugv1_waypoints.yaml")
+SITES = {"asked": ASKING, "team": TEAM, "tasks": TASKS, "program": PROGRAM}
 HOSTS = {kind.name: catalogue.hosts(SITES.get(kind.needs, SITE), [kind]) for kind in catalogue.KINDS}
 SERVICES = sorted({host.service for hosts in HOSTS.values() for host in hosts}, key=lambda s: s.name)
 
@@ -64,7 +65,7 @@ def test_what_is_recalled_is_kept_and_wanted(service):
 def test_it_is_known_about_which_vehicles_a_service_writes(host):
     per_vehicle = any(topic.per_vehicle for topic in host.service.outputs.values())
     assert bool(host.vehicle or host.writes_for) or not per_vehicle
-    assert set(host.writes_for) <= set(SITE.members) | set(TEAM.members) | set(TASKS.members)
+    assert set(host.writes_for) <= set(SITE.members) | set(TEAM.members) | set(TASKS.members) | set(PROGRAM.members)
 
 
 @pytest.mark.parametrize("kind", catalogue.KINDS, ids=lambda k: k.name)

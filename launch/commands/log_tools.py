@@ -35,7 +35,7 @@ def replay_onto_bus(log: Path, rate: float) -> int:
 def replay_into(log: Path, service: str, vehicle: str | None, mission: str | None) -> int:
     """Replays a log into a service and prints the output fields that differ; 0 when there are none, else 1. Raises BadInput."""
     with nullcontext(load_scenario(settings.mission_path(mission))) if mission else logged_site(log) as site:
-        hosts = _hosts_named(service, site, vehicle)
+        hosts = _hosts_named(service, site, vehicle, runs_programs=mission is not None)
         if begin := log_begin(log):
             typer.echo(
                 f"the log begins at {begin / 1e9:.1f} s: {service} begins there like one that is started again, so some differ by that"
@@ -54,11 +54,14 @@ def _to_stderr(line: str) -> None:
     typer.echo(line, err=True)
 
 
-def _hosts_named(name: str, site: Scenario, vehicle: str | None) -> list[ServiceInstance]:
-    """By the name that ``uvf service`` takes (all that it runs) or that ``uvf node list`` shows (that one). Raises BadInput."""
+def _hosts_named(name: str, site: Scenario, vehicle: str | None, runs_programs: bool) -> list[ServiceInstance]:
+    """By the name that ``uvf service`` takes (all that it runs) or that ``uvf node list`` shows (that one). Raises BadInput.
+
+    runs_programs: not where a log brings them along: whoever opens a stranger's log shall not run a stranger's code.
+    """
     if vehicle is not None and vehicle not in site.members:
         raise BadInput(f"no vehicle '{vehicle}' in {site.mission_path.name}; {nearest(vehicle, site.members)}")
-    kinds = [k for k in catalogue.needed(site) if k.clock == "sim"]
+    kinds = [k for k in catalogue.needed(site) if k.clock == "sim" and (runs_programs or k.needs != "program")]
     if any(k.name == name for k in kinds):
         return catalogue.hosts(site, [catalogue.kind(name)], vehicle)
     every = catalogue.hosts(site, kinds)
@@ -66,7 +69,8 @@ def _hosts_named(name: str, site: Scenario, vehicle: str | None) -> list[Service
     if not hosts:
         whose = f" of '{vehicle}'" if vehicle else ""
         known = {k.name for k in kinds} | {h.service.name for h in every if vehicle in (None, h.vehicle)}
-        raise BadInput(f"no service '{name}'{whose} in {site.mission_path.name} to replay into; {nearest(name, known)}")
+        hint = "; a program is run with --mission only" if not runs_programs and any(m.entry.program for m in site.members.values()) else ""
+        raise BadInput(f"no service '{name}'{whose} in {site.mission_path.name} to replay into; {nearest(name, known)}{hint}")
     return hosts
 
 

@@ -42,11 +42,11 @@ def path_error(track: RecordedTrack) -> Finding:
     Counts from the first mission item reached until the end of the run. Legs are straight lines between waypoints, the last to the
     first included. Infinite with fewer than two waypoints, or when no item was reached.
     """
-    p, corners = _scored(track), _corners(track)
+    p, corners = _scored(track), corners_of(track)
     if not len(p) or len(corners) < 2:
         return NO_PATH
     closed = np.vstack((corners, corners[:1]))
-    return largest(np.min([_distance(p[:, 1:3], a[:2], b[:2]) for a, b in pairwise(closed)], axis=0), p)
+    return largest(np.min([leg_distance(p[:, 1:3], a[:2], b[:2]) for a, b in pairwise(closed)], axis=0), p)
 
 
 def altitude_error(track: RecordedTrack) -> Finding:
@@ -55,11 +55,11 @@ def altitude_error(track: RecordedTrack) -> Finding:
     Counts from the first mission item reached until the end of the run. Infinite with fewer than two waypoints, or when no item was
     reached.
     """
-    p, corners = _scored(track), _corners(track)
+    p, corners = _scored(track), corners_of(track)
     if not len(p) or len(corners) < 2:
         return NO_PATH
     closed = np.vstack((corners, corners[:1]))
-    distances = np.array([_distance(p[:, 1:3], a[:2], b[:2]) for a, b in pairwise(closed)])
+    distances = np.array([leg_distance(p[:, 1:3], a[:2], b[:2]) for a, b in pairwise(closed)])
     altitudes = np.array([_altitude(p[:, 1:3], a, b) for a, b in pairwise(closed)])
     nearest_leg = distances.argmin(axis=0)
     return largest(np.abs(p[:, 3] - altitudes[nearest_leg, np.arange(len(p))]), p)
@@ -110,7 +110,8 @@ def _passes(track: RecordedTrack) -> list[tuple[int, MissionItem, Floats]]:
     return found
 
 
-def _corners(track: RecordedTrack) -> Floats:
+def corners_of(track: RecordedTrack) -> Floats:
+    """The waypoints (n, 3) [m, world] of the vehicle's mission."""
     items = track.mission.items if track.mission else ()
     return np.array([array(i.position) for i in items if i.kind == MissionItem.WAYPOINT]).reshape(-1, 3)
 
@@ -127,7 +128,8 @@ def _along(p: Floats, a: Floats, b: Floats) -> Floats:
     return share
 
 
-def _distance(p: Floats, a: Floats, b: Floats) -> Floats:
+def leg_distance(p: Floats, a: Floats, b: Floats) -> Floats:
+    """Distances (n,) [m] of points (n, 2) from the leg between two waypoints."""
     nearest_point = a + _along(p, a, b)[:, None] * (b - a)
     distance: Floats = np.linalg.norm(p - nearest_point, axis=1)
     return distance

@@ -14,6 +14,7 @@ from launch.scoring.flight_measures import separation, spacing_error, speed_at_e
 from launch.scoring.ground_measures import contacts, crashed, distance_driven, goal_time, mapped_floor, pose_error, pose_error_rms
 from launch.scoring.path_measures import altitude_error, circuits, course_error, legs, path_error, waypoint_error
 from launch.scoring.recorded_track import RECORDED, RecordedTrack
+from launch.scoring.route_measures import cross_track_error, waypoints_missed_by
 from launch.scoring.task_measures import TASK_MEASURES, RecordedTask, RecordedTasks
 from schemas import topics
 from schemas.messages import Tasks
@@ -26,7 +27,7 @@ from uvf.runtime.bus.interface import Bus, Sample
 Floats = NDArray[np.float64]
 
 _OF_ALL = (distance_driven, contacts, crashed, pose_error, pose_error_rms, mapped_floor, goal_time)
-_OF_MISSIONS = (circuits, legs, path_error, altitude_error, waypoint_error, course_error)
+_OF_MISSIONS = (circuits, legs, path_error, altitude_error, waypoint_error, course_error, waypoints_missed_by, cross_track_error)
 _OF_FLIGHTS = (separation, spacing_error, station_error, touchdown_sink, touchdown_error, speed_at_end)
 MEASURES: dict[str, Callable[[RecordedTrack], Finding]] = {f.__name__: f for f in (*_OF_ALL, *_OF_MISSIONS, *_OF_FLIGHTS)}
 

@@ -141,6 +141,10 @@ class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         dict[str, dict[str, Any]],
         plain("Parameters by service that differ from those of the vehicle's file: `params: {mapping: {method: hector}}`."),
     ] = {}
+    program: Annotated[
+        str | None,
+        plain("Python file (path relative to the mission file's folder) of a service of your own that runs with the vehicle."),
+    ] = None
 
 
 class Criterion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -183,7 +187,7 @@ def load_mission(path: str | Path) -> MissionFile:
         raise BadInput(f"no mission '{path}'; {nearest(path.stem, known)}")
     mission = load_yaml(path, MissionFile, lambda data, place: whole_mission(path))
     file = FileLocation(str(path))
-    _check_vehicles(mission.vehicles, file.at("vehicles"))
+    _check_vehicles(mission.vehicles, file.at("vehicles"), path.parent)
     _check_follow(mission.vehicles, file.at("vehicles"))
     if mission.wind is not None:
         check_wind(mission.wind, file.at("wind"))
@@ -195,7 +199,7 @@ def load_mission(path: str | Path) -> MissionFile:
     return mission
 
 
-def _check_vehicles(vehicles: dict[str, Vehicle], place: FileLocation) -> None:
+def _check_vehicles(vehicles: dict[str, Vehicle], place: FileLocation, folder: Path) -> None:
     ids: dict[int, str] = {}
     for name, vehicle in vehicles.items():
         if name == SYSTEM:
@@ -207,6 +211,8 @@ def _check_vehicles(vehicles: dict[str, Vehicle], place: FileLocation) -> None:
         for role, other in vehicle.roles.items():
             if other not in vehicles:
                 raise BadInput(f"{place.at(name, 'roles', role)}: no vehicle '{other}'; {nearest(other, vehicles)}")
+        if vehicle.program is not None and not (folder / vehicle.program).is_file():
+            raise BadInput(f"{place.at(name, 'program')}: there is no file {folder / vehicle.program}")
         zones_of(vehicle.fence, place.at(name, "fence"))
         _check_jumps(vehicle.job.mission, place.at(name, "job", "mission"))
 
