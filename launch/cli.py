@@ -11,9 +11,13 @@ from typing import Annotated
 import typer
 
 from launch import settings
-from launch.commands.log import KeyArgument, LogArgument, log_app
+from launch.commands.bus import node_app, topic_app
+from launch.commands.log import LogArgument, log_app
 from launch.commands.map import map_app
+from launch.commands.orders import arm, cancel, disarm, goal, mode
+from launch.commands.param import param_app
 from launch.commands.plan import plan_app
+from launch.commands.running import NUMBERS
 from launch.commands.sim import sim_app
 from launch.commands.slam import slam
 from launch.commands.vehicle import vehicle_app
@@ -22,12 +26,11 @@ from launch.help import without_types_of_flags
 from launch.refusal import bad_input_is_one_line, counted, usage_is_one_line, within
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, help=(__doc__ or "").splitlines()[0])
-topic_app = typer.Typer(no_args_is_help=True, help="Look at messages.")
-node_app = typer.Typer(no_args_is_help=True, help="Look at running services.")
 app.add_typer(topic_app, name="topic")
 app.add_typer(node_app, name="node")
 app.add_typer(log_app, name="log")
 app.add_typer(map_app, name="map")
+app.add_typer(param_app, name="param")
 app.add_typer(plan_app, name="plan")
 app.add_typer(sim_app, name="sim")
 app.add_typer(vehicle_app, name="vehicle")
@@ -313,66 +316,9 @@ def test(context: typer.Context) -> None:
     raise typer.Exit(run_tests(context.args))
 
 
-@topic_app.command("list")
-def topic_list(live: Annotated[bool, typer.Option(help="Only what is on the bus now.")] = False) -> None:
-    """The table of topics and requests."""
-    from launch.commands.topic import list_live, list_table
-
-    with bad_input_is_one_line():
-        if live:
-            list_live()
-        else:
-            list_table()
-
-
-@topic_app.command("echo")
-def topic_echo(
-    key: KeyArgument,
-    count: Annotated[int, typer.Option("-n", min=0, help="Stop after so many.")] = 0,
-) -> None:
-    """Print messages as they come."""
-    from launch.commands.topic import echo
-
-    with bad_input_is_one_line():
-        echo(key, count)
-
-
-@topic_app.command("hz")
-def topic_hz(
-    key: KeyArgument, seconds: Annotated[float, typer.Option("--for", callback=within(0.01), help="How long to count.")] = 5.0
-) -> None:
-    """Measure rates, by wall and by simulation time."""
-    from launch.commands.topic import rates
-
-    with bad_input_is_one_line():
-        rates(key, seconds)
-
-
-@topic_app.command("info")
-def topic_info(key: KeyArgument) -> None:
-    """Type, rate, QoS, writers and readers of a topic."""
-    from launch.commands.topic import info
-
-    with bad_input_is_one_line():
-        info(key)
-
-
-@node_app.command("list")
-def node_list() -> None:
-    """The services that are alive."""
-    from launch.commands.node import list_nodes
-
-    with bad_input_is_one_line():
-        list_nodes()
-
-
-@node_app.command("graph")
-def node_graph() -> None:
-    """Who writes what for whom."""
-    from launch.commands.node import graph
-
-    with bad_input_is_one_line():
-        graph()
+for order in (arm, disarm, mode, cancel):
+    app.command()(order)
+app.command(context_settings=NUMBERS)(goal)
 
 
 def main() -> None:

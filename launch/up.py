@@ -19,10 +19,12 @@ from uvf.models.scenario import load_scenario
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.interface import Query, Sample
 from uvf.runtime.bus.wire import Malformed, decode, guarded
+from uvf.runtime.bus.zenoh_bus import ZenohBus
 from uvf.runtime.log.folder import LOG_FOLDER
 from uvf.runtime.messages.refusals import Refusals
 
-ROUTER_PATIENCE = 10.0  # s
+ROUTER_PATIENCE = 60.0  # s, for a router that is slow to start
+ATTEMPT = 3.0  # s
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ def _run_once(wanted: StartOptions, folder: Path, say: Say, stop: Flag) -> "Runn
         say(line)
     run = RunningMission(wanted, folder, say)
     try:
-        run.start([k.name for k in kinds])
+        run.start([k.name for k in kinds], stop)
         run.watch(stop)
     finally:
         say("stopping")
@@ -92,11 +94,16 @@ class RunningMission:
         self.next_mission: str | None = None
         """The mission that somebody has asked for, to take the place of this one."""
 
-    def start(self, services: list[str]) -> None:
-        """Starts the router first, then all others; the conductor starts time when all are there."""
+    def start(self, services: list[str], stop: Flag) -> None:
+        """Starts the router first, then all others; the conductor starts time when all are there.
+
+        Raises BadInput where no router comes; ``stop`` ends the wait for it.
+        """
         mission = self._wanted.mission
         self._start("router", "router")
-        bus, refuse = self.launcher.connect(ROUTER_PATIENCE), Refusals(self._say).refuse
+        bus, refuse = self._connect(stop), Refusals(self._say).refuse
+        if bus is None:
+            return
         bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, guarded(topics.CLOCK, self._on_clock, refuse))
         for name in ("conductor", "recorder"):
             told = topics.SYSTEM_EVENTS.by(name)
@@ -109,6 +116,20 @@ class RunningMission:
             self._start(name, "service", name, "--mission", mission)
         self._start("recorder", "record", str(self._folder), "--mission", mission)
         self.launcher.tell()
+
+    def _connect(self, stop: Flag) -> ZenohBus | None:
+        end, said = time.monotonic() + ROUTER_PATIENCE, False
+        while not stop.is_set():
+            try:
+                return self.launcher.connect(ATTEMPT)
+            except BadInput:
+                self.launcher.look()  # starts a router again that has died
+                if self.launcher.failed or time.monotonic() > end:
+                    raise
+            if not said:
+                self._say("waiting for the router, which is slow to start")
+                said = True
+        return None
 
     def _start(self, name: str, *arguments: str) -> None:
         self.launcher.start(name, [*arguments], RotatingLog(self._folder / f"{name}.log").write)

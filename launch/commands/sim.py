@@ -1,12 +1,10 @@
 """``uvf sim ...``: change the running simulation: put things in, move them, save it, hold its time."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Annotated, Any
 
 import typer
 
-from uvf.models.yaml_data import BadInput
+from launch.commands.running import NUMBERS, SOURCE, running_system, tell_refusals
 
 sim_app = typer.Typer(no_args_is_help=True, help="Change the running simulation.")
 
@@ -15,29 +13,26 @@ State = Annotated[str, typer.Argument(help="Under which name the state is kept."
 Metre = Annotated[float, typer.Argument(help="m, world frame.")]
 Yaw = Annotated[float, typer.Option(help="rad, from east, left positive.")]
 Height = Annotated[float | None, typer.Option("--z", help="m; of a shape's middle, by default as it stands on the floor.")]
-SOURCE = "cli"
-NUMBERS = {"ignore_unknown_options": True}
-"""For typer: -1.5 is a number, not an option."""
 
 
 def _ask(message: Any, *requests: Any) -> None:
     """What one of the simulators does. Exit code 0 when it was done, 1 with the reason when it was refused, 2 without a running system."""
-    with _run() as run:
+    with running_system() as run:
         replies = _replies(run, requests, message)
     if not any(reply.accepted for reply in replies):
-        _tell_refusals(replies)
+        tell_refusals(replies)
 
 
 def _ask_all(message: Any, *requests: Any) -> None:
     """What all simulators that run do at the same time, or none."""
-    with _run() as run:
+    with running_system() as run:
         if not run.is_paused and run.time > 0:  # or the question would wait for the next step, as what is asked for does
             question = type(message)()
             question.CopyFrom(message)
             question.only_ask = True
-            _tell_refusals(_replies(run, requests, question))
+            tell_refusals(_replies(run, requests, question))
         replies = _replies(run, requests, message)
-    _tell_refusals(replies)
+    tell_refusals(replies)
 
 
 def _replies(run: Any, requests: Any, message: Any) -> list[Any]:
@@ -48,30 +43,6 @@ def _replies(run: Any, requests: Any, message: Any) -> list[Any]:
     if not replies:
         raise TimeoutError(f"nobody answers {' or '.join(request.at(SYSTEM) for request in requests)}")
     return replies
-
-
-def _tell_refusals(replies: list[Any]) -> None:
-    """Ends with them, if there are any."""
-    if reasons := dict.fromkeys(reply.reason for reply in replies if not reply.accepted):
-        typer.echo(f"uvf: {'; '.join(reasons)}", err=True)
-        raise typer.Exit(1)
-
-
-@contextmanager
-def _run() -> Iterator[Any]:
-    """A running system, whose silence is told."""
-    from uvf.client import connect
-
-    try:
-        with connect() as run:
-            yield run
-    except TimeoutError as error:
-        later = "; while the clock is paused it is done, and answered, at the next step" if "no answer" in str(error) else ""
-        typer.echo(f"uvf: {error}{later}", err=True)
-        raise typer.Exit(2) from error
-    except BadInput as error:
-        typer.echo(f"uvf: {error}", err=True)
-        raise typer.Exit(2) from error
 
 
 @sim_app.command(context_settings=NUMBERS)

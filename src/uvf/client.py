@@ -116,6 +116,10 @@ class Client:
         ends = [token.split("/") for token in self._bus.tokens("@ep/**")]
         return sorted({end[1] for end in ends if end[3] == "pub" and end[4].replace("%", "/") == topics.STATUS.at(end[1])})
 
+    def services(self, owner: str) -> list[str]:
+        """Names of the services of a vehicle (or of ``sys``) in the running system, sorted."""
+        return sorted({token.split("/")[2] for token in self._bus.tokens(f"@node/{owner}/**")})
+
     def _if_unknown(self, owner: str) -> str:
         """What there is instead of a vehicle that does not run, else nothing."""
         known = self.vehicles()

@@ -1,0 +1,70 @@
+"""``uvf arm | disarm | mode | goal | cancel``: one request to a vehicle of the running system."""
+
+from math import nan
+from typing import Annotated, Any
+
+import typer
+
+from launch.commands.running import SOURCE, running_system, tell_refusals
+from uvf.models.yaml_data import BadInput, nearest
+
+Vehicle = Annotated[str, typer.Argument(help="A vehicle of the running system.")]
+Metre = Annotated[float, typer.Argument(help="m, world frame.")]
+Height = Annotated[float | None, typer.Argument(help="m, world frame, of an aircraft; left out: as high as it is.")]
+Yaw = Annotated[float | None, typer.Option(help="rad, from east, left positive: how it is to stand there. Left out: anyhow.")]
+Force = Annotated[bool, typer.Option("--force", help="In the air, too: the motor stops.")]
+
+
+def arm(vehicle: Vehicle) -> None:
+    """Arm a vehicle: what it is told moves it from then on."""
+    from schemas import topics
+    from schemas.messages import ArmRequest
+
+    _ask(vehicle, topics.ARM, ArmRequest(arm=True, source=SOURCE), "armed")
+
+
+def disarm(vehicle: Vehicle, force: Force = False) -> None:
+    """Disarm a vehicle: nothing moves it."""
+    from schemas import topics
+    from schemas.messages import ArmRequest
+
+    _ask(vehicle, topics.ARM, ArmRequest(arm=False, force=force, source=SOURCE), "disarmed")
+
+
+def mode(vehicle: Vehicle, name: Annotated[str, typer.Argument(help="As hold, mission, return, manual, offboard.")]) -> None:
+    """Change the mode of a vehicle."""
+    from schemas import topics
+    from schemas.messages import Mode, ModeRequest
+
+    modes = [each.removeprefix("MODE_").lower() for each, value in Mode.items() if value]
+    with running_system() as run:
+        if name.lower() not in modes:
+            raise BadInput(f"no mode '{name}'; {nearest(name, modes)}")
+        tell_refusals([run.ask(vehicle, topics.SET_MODE, ModeRequest(mode=f"MODE_{name.upper()}", source=SOURCE))])
+    typer.echo(f"{vehicle}: mode {name.lower()}")
+
+
+def goal(vehicle: Vehicle, x: Metre, y: Metre, z: Height = None, yaw: Yaw = None) -> None:
+    """Send a vehicle to a place; 'uvf topic echo NAME/nav/status' tells how far it is. The mode is to be mission, of an aircraft hold."""
+    from schemas import topics
+    from schemas.messages import GoalRequest, Vector3
+
+    with running_system() as run:
+        height = run.read(vehicle, topics.POSE).pose.position.z if z is None else z
+        request = GoalRequest(position=Vector3(x=x, y=y, z=height), yaw=nan if yaw is None else yaw, source=SOURCE)
+        tell_refusals([run.ask(vehicle, topics.GOAL, request)])
+    typer.echo(f"{vehicle}: goes to ({x:g}, {y:g})")
+
+
+def cancel(vehicle: Vehicle) -> None:
+    """Cancel the goal of a ground vehicle."""
+    from schemas import topics
+    from schemas.messages import CancelRequest
+
+    _ask(vehicle, topics.CANCEL, CancelRequest(source=SOURCE), "its goal is cancelled")
+
+
+def _ask(vehicle: str, request: Any, message: Any, done: str) -> None:
+    with running_system() as run:
+        tell_refusals([run.ask(vehicle, request, message)])
+    typer.echo(f"{vehicle}: {done}")
