@@ -9,6 +9,7 @@ from google.protobuf.message import Message
 from uvf.runtime.contract.service import Answer
 
 AGAIN = 1.0  # s between two tries
+CANCEL = "cancel"
 PATIENCE = 15.0  # s: an aircraft has no fix at first, a rover no map
 
 
@@ -69,8 +70,10 @@ class PendingRequests:
     def due(self, t: float) -> dict[str, dict[str, list[Message]]]:
         """What is to be sent at ``t`` [s], by request and vehicle."""
         sent: dict[str, dict[str, list[Message]]] = {}
+        cancelling = {ticket.vehicle for ticket in self._open if ticket.name == CANCEL}
         for ticket in self._open:
-            if ticket.asked_at is None and t >= ticket.due:
+            waits = ticket.vehicle in cancelling and ticket.name != CANCEL  # or the vehicle would cancel what it is asked for next
+            if ticket.asked_at is None and t >= ticket.due and not waits:
                 ticket.first_asked = ticket.first_asked or t
                 ticket.asked_at = t
                 again = type(ticket.message)()

@@ -3,6 +3,7 @@
 from schemas import topics
 from schemas.messages import (
     ArmRequest,
+    CancelRequest,
     DriveCommand,
     Event,
     FollowRequest,
@@ -40,6 +41,7 @@ class Inputs(Reads):
     follow: list[Answer[FollowRequest, Reply]] = answers(topics.FOLLOW)
     preview: list[Answer[PreviewRequest, PreviewReply]] = answers(topics.PREVIEW)
     save_map: list[Answer[SaveMapRequest, Reply]] = answers(topics.SAVE_MAP)
+    cancel: list[Answer[CancelRequest, Reply]] = answers(topics.CANCEL)
 
 
 class Outputs(Writes):
@@ -55,3 +57,4 @@ class Outputs(Writes):
     follow: dict[str, FollowRequest] | None = call(topics.FOLLOW)
     preview: dict[str, list[PreviewRequest]] | None = call(topics.PREVIEW)
     save_map: dict[str, SaveMapRequest] | None = call(topics.SAVE_MAP)
+    cancel: dict[str, CancelRequest] | None = call(topics.CANCEL)

@@ -133,7 +133,7 @@ class EngagedAction(RequestAction):
         self._engaged = False
 
     def stop(self, now: TeamSituation) -> None:
-        """Asks no more; the vehicle goes on until somebody tells it something else."""
+        """Asks no more; the vehicle goes on with its job until somebody tells it something else."""
         super().stop(now)
         self._engage.stop(now)
 

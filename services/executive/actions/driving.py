@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from math import nan
 
-from schemas.messages import FollowRequest, GoalRequest, NavStatus, RouteRequest, Vector3
+from schemas.messages import CancelRequest, FollowRequest, GoalRequest, NavStatus, RouteRequest, Vector3
 from services.executive.actions.action import EngagedAction, Failed, RequestAction
+from services.executive.asking import CANCEL
 from services.executive.interface import SOURCE
 from services.executive.situation import TeamSituation
 
@@ -33,6 +34,15 @@ class ErrandAction(EngagedAction):
         self._taken = False
         self._accepted_at = None
         now.given_up.pop(self.vehicle, None)
+
+    def stop(self, now: TeamSituation) -> None:
+        """Cancels what the vehicle does for this task; what somebody else has told it since is theirs."""
+        was_asked = self._accepted_at is not None or (self._ticket is not None and self._ticket.asked_at is not None)
+        super().stop(now)
+        status = now.now.nav.get(self.vehicle)
+        told_else = self._taken and (status is None or status.job not in self.jobs or not self._is_ours(status))
+        if was_asked and not told_else:
+            now.desk.ask(CANCEL, self.vehicle, CancelRequest(source=SOURCE), patience=0.0)
 
     def _carry_out(self, now: TeamSituation) -> bool:
         """Whether the vehicle is there. Raises Failed when the planner has given it up, or does something else."""

@@ -142,6 +142,26 @@ def test_a_task_ends_by_until_and_fails_after_within(tmp_path):
     assert (team.states(), team.tasks.tasks[0].reason.split(":")[0]) == (["FAILED"], "not done within 3 s")
 
 
+def test_what_is_ended_is_cancelled_before_the_vehicle_is_asked_for_the_next(tmp_path):
+    follow = "  - {name: behind, follow: {vehicle: bert, leader: anne}, until: {vehicle: anne, reaches: {x: 4.0, y: 1.7}}}\n"
+    team = Team(follow + "  - {name: home, goal: {vehicle: bert, x: 8.0, y: 4.4}}\n", tmp_path)
+    team.step(20)
+    team.places["anne"] = (4.0, 1.7)
+    team.step(10)
+    asked = [name for name, vehicle, _ in team.asked if vehicle == "bert" and name in ("follow", "cancel", "goal")]
+    assert asked == ["follow", "cancel", "goal"]
+    assert team.states() == ["DONE", "RUNNING"]
+
+
+def test_what_somebody_else_has_told_the_vehicle_is_not_cancelled(tmp_path):
+    team = Team("  - {name: behind, follow: {vehicle: bert, leader: anne}, until: {vehicle: anne, reaches: {x: 4.0, y: 1.7}}}\n", tmp_path)
+    team.step(20)
+    team.nav["bert"] = NavStatus(job="goal", state=NavStatus.DRIVING)
+    team.places["anne"] = (4.0, 1.7)
+    team.step(5)
+    assert "cancel bert" not in team.requests()
+
+
 def test_a_repeated_task_is_done_so_often(tmp_path):
     team = Team("  - {name: twice, repeat: 2, goal: {vehicle: anne, x: 4.0, y: 1.7}}\n", tmp_path)
     team.step(10)
