@@ -272,11 +272,13 @@ class PlannerService(Service):
             self._target, self._reason = None, f"nothing is heard of {leader}" if place is None else f"near enough to {leader}"
             return
         in_map, busy = self._desk.in_map(target), self._navigator.is_busy
+        has_moved = self._target is None or hypot(in_map[0] - self._target[0], in_map[1] - self._target[1]) > MOVED
         if busy and self._target is not None:
-            if hypot(in_map[0] - self._target[0], in_map[1] - self._target[1]) > MOVED:
+            if has_moved:
                 self._target = in_map
                 self._navigator.lead_on(t, NavigationGoal(*in_map, None, self.params.goal_tolerance))
-        elif self._navigator.feedback.status != Status.ABORTED or self._target is None:
+        elif self._navigator.feedback.status != Status.ABORTED or has_moved or t >= self._try_at:
+            self._try_at = inf
             self._go(t, in_map, self.params.goal_tolerance)
 
     def _aim_exploring(self, t: float, here: Pose2) -> None:
@@ -298,7 +300,10 @@ class PlannerService(Service):
         if told.status == Status.REACHED and self._job.is_errand and not self._job.leader:
             self._end(t, NavStatus.REACHED, "goal reached")
             self._tell(t, "goal reached", "")
-        elif told.status == Status.ABORTED:
+        elif told.status == Status.ABORTED and self._job.leader:
+            # Who is followed goes on, and so does the place to go to: no place on its way is the last one.
+            self._try_at = min(self._try_at, t + AGAIN)
+        elif told.status == Status.ABORTED and self._job != IDLE:
             self._give_up(t, told.reason)
         if self._job.name == "explore" and told.status in (Status.REACHED, Status.ABORTED):
             self._exploration.done(t)

@@ -7,7 +7,8 @@ from schemas.messages import FollowRequest, NavStatus, PoseInFrame, RouteRequest
 from services.planner.params import PlannerParams
 from tests.runtime.stepping import recall
 from tests.services.planner.planner_bench import CANCEL, READY, Bench, world
-from uvf.runtime.messages.convert import planar_pose, stamp
+from tests.services.planner.plans import room
+from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
 
 PLACES = ((2.0, 0.6), (3.4, 1.0), (3.4, 2.4))
 WAIT = int(PlannerParams().wait_at_goal * 4) + 2
@@ -134,6 +135,20 @@ def test_it_follows_on_the_track_of_the_leader_and_stands_when_near():
     assert len(bench.said["path"].poses) == 0
     lead(bench, *((3.2 - 0.1 * k, 2.2) for k in range(12)))
     assert bench.state == NavStatus.DRIVING
+
+
+def test_a_place_in_an_obstacle_does_not_end_following_for_the_leader_goes_on():
+    bench = Bench()
+    cells = room(4.0, 3.0)
+    cells[16:25, 40:50] = 100  # where the leader stood when the map was drawn
+    bench.grid = occupancy_grid(cells, 0.05, 0.0, 0.0, "v/map", 0.0)
+    lead(bench, (2.2, 1.0), follow=[FollowRequest(vehicle="leader", distance=0.8)])
+    lead(bench, *((2.2 + 0.1 * k, 1.0) for k in range(9)), *[(3.0, 1.0)] * 60)
+    assert (bench.said["nav_status"].job, bench.said["nav_status"].reason) == ("follow", "the goal lies in an obstacle")
+    assert "follow: goal given up" not in bench.events
+    lead(bench, *((3.2, 1.0 + 0.1 * k) for k in range(1, 13)))
+    assert bench.state == NavStatus.DRIVING
+    assert bench.path[-1] == pytest.approx((3.2, 1.4), abs=0.35)
 
 
 def test_without_word_of_the_leader_it_stands_and_says_so():

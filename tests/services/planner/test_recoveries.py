@@ -21,6 +21,8 @@ def test_a_goal_is_given_up_when_the_vehicle_gets_nowhere_whatever_is_tried():
     assert [event.startswith(recovery) for event, recovery in zip(told, RECOVERIES, strict=True)] == [True] * 5
     assert "goal: goal given up" in bench.events
     assert bench.said["nav_status"].job == "idle"
+    bench.step(20)
+    assert [event for event in bench.events if "given up" in event] == ["goal: goal given up"]
 
 
 def test_trembling_about_the_heading_where_angles_wrap_is_not_getting_anywhere():
