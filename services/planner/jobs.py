@@ -64,8 +64,8 @@ class Job:
 
     @property
     def allow_unknown(self) -> bool:
-        """Whether the path may cross unknown cells: the mission's author and the way home know more than the map."""
-        return self.name in ("mission", "return")
+        """Whether the path may cross unknown cells: who is followed has driven there, and a mission's author knows more than the map."""
+        return bool(self.leader) or self.name in ("mission", "return")
 
 
 @dataclass(frozen=True)
