@@ -1,5 +1,6 @@
 """``uvf arm | disarm | mode | goal | cancel``: one request to a vehicle of the running system."""
 
+from contextlib import suppress
 from math import nan
 from typing import Annotated, Any
 
@@ -41,6 +42,7 @@ def mode(vehicle: Vehicle, name: Annotated[str, typer.Argument(help="As hold, mi
         if name.lower() not in modes:
             raise BadInput(f"no mode '{name}'; {nearest(name, modes)}")
         tell_refusals([run.ask(vehicle, topics.SET_MODE, ModeRequest(mode=f"MODE_{name.upper()}", source=SOURCE))])
+        _await_status(run, vehicle)
     typer.echo(f"{vehicle}: mode {name.lower()}")
 
 
@@ -67,4 +69,14 @@ def cancel(vehicle: Vehicle) -> None:
 def _ask(vehicle: str, request: Any, message: Any, done: str) -> None:
     with running_system() as run:
         tell_refusals([run.ask(vehicle, request, message)])
+        _await_status(run, vehicle)
     typer.echo(f"{vehicle}: {done}")
+
+
+def _await_status(run: Any, vehicle: str) -> None:
+    """Waits until everybody has heard of the change: the next command of a script builds on it. Not while time is paused."""
+    from schemas import topics
+
+    before = run.heard(vehicle, topics.STATUS)
+    with suppress(TimeoutError):
+        run.wait(lambda: run.heard(vehicle, topics.STATUS) > before + 1, 1.0)
