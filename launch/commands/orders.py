@@ -6,11 +6,9 @@ from typing import Annotated, Any
 
 import typer
 
-from launch.commands.running import SOURCE, running_system, tell_refusals
+from launch.commands.running import SOURCE, Metre, Vehicle, running_system, tell_refusals
 from uvf.models.yaml_data import BadInput, nearest
 
-Vehicle = Annotated[str, typer.Argument(help="A vehicle of the running system.")]
-Metre = Annotated[float, typer.Argument(help="m, world frame.")]
 Height = Annotated[float | None, typer.Argument(help="m, world frame, of an aircraft; left out: as high as it is.")]
 Yaw = Annotated[float | None, typer.Option(help="rad, from east, left positive: how it is to stand there. Left out: anyhow.")]
 Force = Annotated[bool, typer.Option("--force", help="In the air, too: the motor stops.")]

@@ -5,12 +5,11 @@ from typing import Annotated, Any
 
 import typer
 
-from launch.commands.running import NUMBERS, SOURCE, running_system, tell_refusals
+from launch.commands.running import NUMBERS, SOURCE, Vehicle, running_system, tell_refusals
 from uvf.models.yaml_data import BadInput, nearest, parse_yaml
 
 param_app = typer.Typer(no_args_is_help=True, help="Read and set parameters of running services.")
 
-Vehicle = Annotated[str, typer.Argument(help="A vehicle of the running system.")]
 Name = Annotated[str, typer.Argument(metavar="SERVICE.PARAMETER", help="As tracker.speed.")]
 
 
@@ -18,7 +17,7 @@ Name = Annotated[str, typer.Argument(metavar="SERVICE.PARAMETER", help="As track
 def param_list(vehicle: Vehicle, service: Annotated[str | None, typer.Argument(help="By default all that have some.")] = None) -> None:
     """Parameters with value, unit and meaning."""
     with running_system() as run:
-        for name in _services(run, vehicle) if service is None else [_known(run, vehicle, service)]:
+        for name in run.services(vehicle) if service is None else [_known(run, vehicle, service)]:
             for param in _asked(run, vehicle, name).params:
                 unit = f" {param.unit}" if param.unit else ""
                 fixed = " (fixed while it runs)" if param.read_only else ""
@@ -42,16 +41,8 @@ def param_set(vehicle: Vehicle, name: Name, value: Annotated[str, typer.Argument
         typer.echo(f"{name} = {_asked(run, vehicle, service, param, json.dumps(data, default=str)).params[0].value}")
 
 
-def _services(run: Any, vehicle: str) -> list[str]:
-    """The services of a vehicle. Raises BadInput for a vehicle that does not run."""
-    found: list[str] = run.services(vehicle)
-    if not found:
-        raise BadInput(f"no vehicle '{vehicle}' is running; {nearest(vehicle, run.vehicles())}")
-    return found
-
-
 def _known(run: Any, vehicle: str, service: str) -> str:
-    services = _services(run, vehicle)
+    services = run.services(vehicle)
     if service not in services:
         raise BadInput(f"{vehicle} has no service '{service}'; {nearest(service, services)}")
     return service
@@ -60,7 +51,7 @@ def _known(run: Any, vehicle: str, service: str) -> str:
 def _parts(run: Any, vehicle: str, name: str) -> tuple[str, str]:
     service, _, param = name.partition(".")
     if not param:
-        raise BadInput(f"'{name}': write it as SERVICE.PARAMETER; the services are {', '.join(_services(run, vehicle))}")
+        raise BadInput(f"'{name}': write it as SERVICE.PARAMETER; the services are {', '.join(run.services(vehicle))}")
     return _known(run, vehicle, service), param
 
 

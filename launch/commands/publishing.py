@@ -1,26 +1,24 @@
 """``uvf topic pub``: a message of a topic from its fields, sent at a steady rate."""
 
 import time
+from dataclasses import replace
 from itertools import count as counter
 from typing import Any
 
 import typer
 from google.protobuf.json_format import ParseDict, ParseError
 
-from launch.commands.topic import full_key
-from schemas.topics import TOPICS, Topic
+from launch.commands.topic import full_key, known_topic
+from schemas.topics import PREFIX, Topic
 from uvf.client import Client
 from uvf.models.yaml_data import BadInput, nearest, parse_yaml
-from uvf.runtime.messages.topic_lookup import topic_of
 
 
 def message_of(key: str, fields: str) -> tuple[str, Topic[Any], Any]:
     """(owner, topic, message) of a key without wildcards and a message's fields (YAML). Raises BadInput."""
-    whole, owner = full_key(key), full_key(key).split("/")[1]
-    topic = topic_of(whole)
-    if topic is None or "*" in key:
-        known = [t.key.replace("<owner>", owner) for t in TOPICS.values()]
-        raise BadInput(f"no topic '{key}' in the table; {nearest(key, known)}")
+    topic = known_topic(key)
+    if "*" in key:
+        raise BadInput(f"no topic '{key}' in the table; * stands for many, a message is of one")
     data = parse_yaml(fields, "the message")
     if not isinstance(data, dict):
         raise BadInput(f"'{fields}' are no fields; write them as '{{linear: 0.1}}'")
@@ -32,8 +30,8 @@ def message_of(key: str, fields: str) -> tuple[str, Topic[Any], Any]:
         message = ParseDict(data, topic.message())
     except ParseError as error:
         raise BadInput(f"{topic.message.DESCRIPTOR.name}: {' '.join(str(error).split())}") from error
-    before, slot, after = topic.at(owner).partition("<source>")
-    return owner, topic.by(whole[len(before) : len(whole) - len(after)]) if slot else topic, message
+    own = full_key(key).removeprefix(f"{PREFIX}/")
+    return own.partition("/")[0], replace(topic, key=own), message
 
 
 def publish(run: Client, owner: str, topic: Topic[Any], message: Any, rate: float, count: int) -> None:

@@ -2,12 +2,14 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
 from uvf.models.yaml_data import BadInput
 
+Vehicle = Annotated[str, typer.Argument(help="A vehicle of the running system.")]
+Metre = Annotated[float, typer.Argument(help="m, world frame.")]
 SOURCE = "cli"
 NUMBERS = {"ignore_unknown_options": True}
 """For typer: -1.5 is a number, not an option."""

@@ -4,13 +4,12 @@ from typing import Annotated, Any
 
 import typer
 
-from launch.commands.running import NUMBERS, SOURCE, running_system, tell_refusals
+from launch.commands.running import NUMBERS, SOURCE, Metre, running_system, tell_refusals
 
 sim_app = typer.Typer(no_args_is_help=True, help="Change the running simulation.")
 
 Name = Annotated[str, typer.Argument(help="Of a vehicle or of what has been spawned.")]
 State = Annotated[str, typer.Argument(help="Under which name the state is kept.")]
-Metre = Annotated[float, typer.Argument(help="m, world frame.")]
 Yaw = Annotated[float, typer.Option(help="rad, from east, left positive.")]
 Height = Annotated[float | None, typer.Option("--z", help="m; of a shape's middle, by default as it stands on the floor.")]
 

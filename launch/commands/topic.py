@@ -3,12 +3,13 @@
 import time
 from collections import defaultdict
 from collections.abc import Callable
+from typing import Any
 
 import typer
 from google.protobuf.message import DecodeError
 from google.protobuf.text_format import MessageToString
 
-from schemas.topics import PREFIX, REQUESTS, TOPICS
+from schemas.topics import PREFIX, REQUESTS, TOPICS, Topic
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.interface import Sample, matches
@@ -36,6 +37,15 @@ def full_key(key: str) -> str:
     return key if key.startswith(f"{PREFIX}/") else f"{PREFIX}/{key}"
 
 
+def known_topic(key: str) -> Topic[Any]:
+    """The topic of the table that a key as people write it belongs to. Raises BadInput."""
+    topic = topic_of(full_key(key))
+    if topic is None:
+        known = [t.key.replace("<owner>", full_key(key).split("/")[1]) for t in TOPICS.values()]
+        raise BadInput(f"no topic '{key}' in the table; {nearest(key, known)}")
+    return topic
+
+
 def _listen(key: str, heard: Callable[[Sample], None], go_on: Callable[[], bool]) -> None:
     with ZenohBus(router_from(), timeout=3.0) as bus:
         bus.subscribe_all(lambda sample: heard(sample) if matches(full_key(key), sample.key) else None, depth=DEPTH)
@@ -59,9 +69,8 @@ def list_live() -> None:
 def echo(key: str, count: int) -> None:
     """Prints messages; ``count`` 0 = until Ctrl-C."""
     left = [count or -1]
-    if topic_of(full_key(key)) is None and "srv/" not in key and "**" not in key:
-        known = [t.key.replace("<owner>", key.partition("/")[0]) for t in TOPICS.values()]
-        raise BadInput(f"no topic '{key}' in the table; {nearest(key, known)}")
+    if "srv/" not in key and "**" not in key:
+        known_topic(key)
 
     def heard(sample: Sample) -> None:
         if left[0] == 0:
@@ -102,10 +111,7 @@ def rates(key: str, seconds: float) -> None:
 
 def info(key: str) -> None:
     """Prints the table's line of a key and its live endpoints."""
-    topic = topic_of(full_key(key))
-    if topic is None:
-        known = [t.key.replace("<owner>", key.partition("/")[0]) for t in TOPICS.values()]
-        raise BadInput(f"no topic '{key}' in the table; {nearest(key, known)}")
+    topic = known_topic(key)
     typer.echo(f"{topic.key}: {topic.about}\ntype {topic.message.DESCRIPTOR.full_name}, {topic.hz:g} Hz, QoS {topic.qos.value}")
     with ZenohBus(router_from(), timeout=3.0) as bus:
         for token in bus.tokens("@ep/**"):

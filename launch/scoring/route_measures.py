@@ -24,7 +24,7 @@ def waypoints_missed_by(track: RecordedTrack) -> Finding:
         return Finding(inf, note="there are no waypoints")
     p = track.positions()
     distance, k, sample = max(passed)
-    return Finding(distance, float(p[sample, 0]), (float(p[sample, 1]), float(p[sample, 2])), f"item {k}")
+    return Finding(distance, float(p[sample, 0]), (float(p[sample, 1]), float(p[sample, 2])), f"waypoint {k + 1} of {len(passed)}")
 
 
 def cross_track_error(track: RecordedTrack) -> Finding:

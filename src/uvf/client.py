@@ -117,8 +117,11 @@ class Client:
         return sorted({end[1] for end in ends if end[3] == "pub" and end[4].replace("%", "/") == topics.STATUS.at(end[1])})
 
     def services(self, owner: str) -> list[str]:
-        """Names of the services of a vehicle (or of ``sys``) in the running system, sorted."""
-        return sorted({token.split("/")[2] for token in self._bus.tokens(f"@node/{owner}/**")})
+        """Names of the services of a vehicle (or of ``sys``) in the running system, sorted. Raises TimeoutError where there are none."""
+        found = sorted({token.split("/")[2] for token in self._bus.tokens(f"@node/{owner}/**")})
+        if not found:
+            raise TimeoutError(f"'{owner}' has no services{self._if_unknown(owner)}")
+        return found
 
     def _if_unknown(self, owner: str) -> str:
         """What there is instead of a vehicle that does not run, else nothing."""
