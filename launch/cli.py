@@ -11,14 +11,14 @@ from typing import Annotated
 import typer
 
 from launch import settings
-from launch.commands.bus import node_app, topic_app
+from launch.commands.live.bus import node_app, topic_app
+from launch.commands.live.orders import arm, cancel, disarm, goal, mode
+from launch.commands.live.param import param_app
+from launch.commands.live.running import NUMBERS
+from launch.commands.live.sim import sim_app
 from launch.commands.log import LogArgument, log_app
 from launch.commands.map import map_app
-from launch.commands.orders import arm, cancel, disarm, goal, mode
-from launch.commands.param import param_app
 from launch.commands.plan import plan_app
-from launch.commands.running import NUMBERS
-from launch.commands.sim import sim_app
 from launch.commands.slam import slam
 from launch.commands.vehicle import vehicle_app
 from launch.commands.world import world_app

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from itertools import islice
 from pathlib import Path
 
-from launch.commands.topic import full_key, sample_text
+from launch.commands.live.topic import full_key, sample_text
 from launch.scoring.last_words import event_text
 from schemas import topics
 from schemas.messages import Event

@@ -8,7 +8,7 @@ from typing import Any
 import typer
 from google.protobuf.json_format import ParseDict, ParseError
 
-from launch.commands.topic import full_key, known_topic
+from launch.commands.live.topic import full_key, known_topic
 from schemas.topics import PREFIX, Topic
 from uvf.client import Client
 from uvf.models.yaml_data import BadInput, nearest, parse_yaml

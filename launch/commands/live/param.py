@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from launch.commands.running import NUMBERS, SOURCE, Vehicle, running_system, tell_refusals
+from launch.commands.live.running import NUMBERS, SOURCE, Vehicle, running_system, tell_refusals
 from uvf.models.yaml_data import BadInput, nearest, parse_yaml
 
 param_app = typer.Typer(no_args_is_help=True, help="Read and set parameters of running services.")

@@ -4,7 +4,7 @@ from typing import Annotated, Any
 
 import typer
 
-from launch.commands.running import NUMBERS, SOURCE, Metre, running_system, tell_refusals
+from launch.commands.live.running import NUMBERS, SOURCE, Metre, running_system, tell_refusals
 
 sim_app = typer.Typer(no_args_is_help=True, help="Change the running simulation.")
 

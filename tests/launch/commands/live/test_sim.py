@@ -4,7 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from launch.cli import app
-from launch.commands import sim as sim_cli
+from launch.commands.live import sim as sim_cli
 from schemas import topics
 from schemas.messages import ClockRequest, Reply
 from uvf.runtime.messages.convert import yaw_of

@@ -4,8 +4,8 @@ from typing import Annotated
 
 import typer
 
+from launch.commands.live.running import running_system
 from launch.commands.log import KeyArgument
-from launch.commands.running import running_system
 from launch.refusal import bad_input_is_one_line, within
 
 topic_app = typer.Typer(no_args_is_help=True, help="Look at messages, and send some.")
@@ -15,7 +15,7 @@ node_app = typer.Typer(no_args_is_help=True, help="Look at running services.")
 @topic_app.command("list")
 def topic_list(live: Annotated[bool, typer.Option(help="Only what is on the bus now.")] = False) -> None:
     """The table of topics and requests."""
-    from launch.commands.topic import list_live, list_table
+    from launch.commands.live.topic import list_live, list_table
 
     with bad_input_is_one_line():
         if live:
@@ -30,7 +30,7 @@ def topic_echo(
     count: Annotated[int, typer.Option("-n", min=0, help="Stop after so many.")] = 0,
 ) -> None:
     """Print messages as they come."""
-    from launch.commands.topic import echo
+    from launch.commands.live.topic import echo
 
     with bad_input_is_one_line():
         echo(key, count)
@@ -44,7 +44,7 @@ def topic_pub(
     count: Annotated[int, typer.Option("-n", min=0, help="How many; 0: until Ctrl-C.")] = 1,
 ) -> None:
     """Send messages. A topic that a service writes has two writers then, and its readers hear both."""
-    from launch.commands.publishing import message_of, publish
+    from launch.commands.live.publishing import message_of, publish
 
     with bad_input_is_one_line():
         owner, topic, message = message_of(key, fields)
@@ -57,7 +57,7 @@ def topic_hz(
     key: KeyArgument, seconds: Annotated[float, typer.Option("--for", callback=within(0.01), help="How long to count.")] = 5.0
 ) -> None:
     """Measure rates, by wall and by simulation time."""
-    from launch.commands.topic import rates
+    from launch.commands.live.topic import rates
 
     with bad_input_is_one_line():
         rates(key, seconds)
@@ -66,7 +66,7 @@ def topic_hz(
 @topic_app.command("info")
 def topic_info(key: KeyArgument) -> None:
     """Type, rate, QoS, writers and readers of a topic."""
-    from launch.commands.topic import info
+    from launch.commands.live.topic import info
 
     with bad_input_is_one_line():
         info(key)
@@ -75,7 +75,7 @@ def topic_info(key: KeyArgument) -> None:
 @node_app.command("list")
 def node_list() -> None:
     """The services that are alive."""
-    from launch.commands.node import list_nodes
+    from launch.commands.live.node import list_nodes
 
     with bad_input_is_one_line():
         list_nodes()
@@ -84,7 +84,7 @@ def node_list() -> None:
 @node_app.command("graph")
 def node_graph() -> None:
     """Who writes what for whom."""
-    from launch.commands.node import graph
+    from launch.commands.live.node import graph
 
     with bad_input_is_one_line():
         graph()

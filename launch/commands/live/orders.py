@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from launch.commands.running import SOURCE, Metre, Vehicle, running_system, tell_refusals
+from launch.commands.live.running import SOURCE, Metre, Vehicle, running_system, tell_refusals
 from uvf.models.yaml_data import BadInput, nearest
 
 Height = Annotated[float | None, typer.Argument(help="m, world frame, of an aircraft; left out: as high as it is.")]

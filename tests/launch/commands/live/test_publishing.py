@@ -2,7 +2,7 @@
 
 import pytest
 
-from launch.commands.publishing import message_of
+from launch.commands.live.publishing import message_of
 from schemas import topics
 from schemas.messages import DriveCommand, SurfaceCommand
 from uvf.models.yaml_data import BadInput
