@@ -1,6 +1,9 @@
 """An outside program drives a rover through waypoints by PI on distance and heading. Start ``./uvf up`` first.
 
+    ./uvf mode burger hold
     .venv/bin/python examples/08_waypoints.py 2.6,1.5 2.2,1.2
+
+It drives straight, around nothing: the first line keeps the rover, which explores the house, in the room where it starts.
 
 The same over MAVLink: ``09_waypoints_mavlink.py``; as a program of a mission, recorded with it: ``missions/ugv1_waypoints.yaml``.
 """

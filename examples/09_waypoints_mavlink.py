@@ -1,6 +1,9 @@
 """An outside program drives a rover through waypoints over MAVLink alone, as it would a PX4 rover. Start ``./uvf up`` first.
 
-.venv/bin/python examples/09_waypoints_mavlink.py 2.6,1.5 2.2,1.2
+    ./uvf mode burger hold
+    .venv/bin/python examples/09_waypoints_mavlink.py 2.6,1.5 2.2,1.2
+
+It drives straight, around nothing: the first line keeps the rover, which explores the house, in the room where it starts.
 """
 
 import os

@@ -68,7 +68,9 @@ def test_a_run_says_so_before_it_begins(faulty, monkeypatch, capsys):
 def test_the_live_start_says_so_before_it_starts_anything(faulty, monkeypatch):
     said: list = []
     nothing = SimpleNamespace(stop=lambda: None, failed=False)
-    stand_in = SimpleNamespace(start=said.append, watch=lambda stop: None, launcher=nothing, simulated=0.0, next_mission=None)
+    stand_in = SimpleNamespace(
+        start=lambda kinds, stop: said.append(kinds), watch=lambda stop: None, launcher=nothing, simulated=0.0, next_mission=None
+    )
     monkeypatch.setattr(up, "load_scenario", lambda path: load_scenario(path, faulty))
     monkeypatch.setattr(up, "stop_flag", lambda: None)
     monkeypatch.setattr(up, "RunningMission", lambda *_: stand_in)
