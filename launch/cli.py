@@ -198,18 +198,11 @@ def report(
     run: Annotated[Path | None, typer.Argument(help=RUN, callback=known_run)] = None,
     out: Annotated[Path | None, typer.Option(help="Folder to write into; by default report/ beside the logs.")] = None,
 ) -> None:
-    """Report on the flights of a run: a page of plots for each aircraft and a table of figures."""
-    from rich.console import Console
-
-    from launch.flights.report import flights, folder_beside, table, write
+    """Report on a run: one page with pictures, figures, criteria and events of all vehicles, and the pictures beside it."""
+    from launch.commands.report import report_run
 
     with bad_input_is_one_line():
-        run = run or settings.runs_folder() / "latest"
-        aircraft = flights(run)
-        for each in aircraft:
-            Console().print(table(each))
-        for path in write(aircraft, out or folder_beside(run)):
-            say(str(path))
+        report_run(run or settings.runs_folder() / "latest", out)
 
 
 @app.command()

@@ -142,7 +142,12 @@ TF_WORLD = Topic(f"{_V}/tf/world", m.FrameTransform, 0, _Q.LATCHED, "world from 
 TF_MAP = Topic(f"{_V}/tf/map", m.FrameTransform, 10, _Q.STATE, "map from odom", kept=True)
 OCTREE = Topic(f"{_V}/map/octree", m.OctreeMap, 0, _Q.LATCHED, "what is occupied and free in space, world frame", kept=True)
 SLICE = Topic(f"{_V}/map/slice", m.Grid, 0, _Q.LATCHED, "a level slice of the octree, int8: -1 unknown, 0 free, 100 occupied")
-HEIGHTS = Topic(f"{_V}/map/heights", m.Grid, 0, _Q.LATCHED, "top and ground by the octree, 2 float32 [m], NaN unknown")
+HEIGHTS = Topic(
+    f"{_V}/map/heights", m.Grid, 0, _Q.LATCHED, "top and ground by octree or elevation map, 2 float32 [m], NaN unknown", kept=True
+)
+SHARED_MAP = Topic(
+    f"{_V}/map/shared", m.Grid, 0, _Q.LATCHED, "a map that another vehicle has made, world frame: as map/grid or map/heights", kept=True
+)
 TF_ODOM = Topic(f"{_V}/tf/odom", m.FrameTransform, 50, _Q.STATE, "odom from base_footprint")
 TF_JOINTS = Topic(f"{_V}/tf/joints", m.FrameTransforms, 20, _Q.STATE, "links that joints move: the wheels")
 TF_GIMBAL = Topic(f"{_V}/tf/gimbal", m.FrameTransform, 5, _Q.STATE, "base_link from the gimbal's camera, where it looks now")

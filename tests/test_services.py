@@ -16,11 +16,12 @@ from uvf.runtime.state.stop_all import StopStatus
 
 SITE = load_scenario(ROOT / "missions" / "demo.yaml")
 ASKING = load_scenario(ROOT / "missions" / "mapping.yaml")
+FROM_ABOVE = load_scenario(ROOT / "missions" / "air_ground.yaml")
 TEAM = load_scenario(ROOT / "missions" / "team.yaml")
 TASKS = load_scenario(ROOT / "missions" / "ugv2_slam.yaml")
 PROGRAM = load_scenario(ROOT / "missions" / "ugv1_waypoints.yaml")
-SITES = {"asked": ASKING, "team": TEAM, "tasks": TASKS, "program": PROGRAM}
-HOSTS = {kind.name: catalogue.hosts(SITES.get(kind.needs, SITE), [kind]) for kind in catalogue.KINDS}
+SITES = {"asked": ASKING, "team": TEAM, "tasks": TASKS, "program": PROGRAM, "elevation": FROM_ABOVE}
+HOSTS = {kind.name: catalogue.hosts(SITES.get(kind.name, SITES.get(kind.needs, SITE)), [kind]) for kind in catalogue.KINDS}
 SERVICES = sorted({host.service for hosts in HOSTS.values() for host in hosts}, key=lambda s: s.name)
 
 
@@ -65,7 +66,7 @@ def test_what_is_recalled_is_kept_and_wanted(service):
 def test_it_is_known_about_which_vehicles_a_service_writes(host):
     per_vehicle = any(topic.per_vehicle for topic in host.service.outputs.values())
     assert bool(host.vehicle or host.writes_for) or not per_vehicle
-    assert set(host.writes_for) <= set(SITE.members) | set(TEAM.members) | set(TASKS.members) | set(PROGRAM.members)
+    assert set(host.writes_for) <= set(SITE.members) | {name for site in SITES.values() for name in site.members}
 
 
 @pytest.mark.parametrize("kind", catalogue.KINDS, ids=lambda k: k.name)

@@ -1,7 +1,7 @@
 """What ``uvf run`` prints."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from statistics import median
@@ -16,6 +16,8 @@ from launch.campaign import SeedRun, run_seeds, success_interval
 from launch.changed_mission import changed_mission
 from launch.run import Result, run_lockstep
 from launch.runs import new_run
+from launch.scoring.last_words import why
+from launch.scoring.scores import Verdict
 from launch.vehicles.mission_faults import warnings
 from uvf.models.scenario import load_scenario
 from uvf.models.yaml_data import BadInput
@@ -79,14 +81,19 @@ def _progress(title: str, total: float, unit: str = "s") -> Iterator[tuple[Progr
         yield bar, lambda done: bar.update(task, completed=done)
 
 
-def _print_result(result: Result, log: Path) -> None:
+def criteria_table(verdicts: Sequence[Verdict]) -> Table:
+    """The criteria of a mission with what was measured."""
     table = Table("subject", "measure", "value", "limit", "", "decided by")
-    for verdict in result.verdicts:
+    for verdict in verdicts:
         row = (escaped(verdict.subject), verdict.criterion.measure, f"{verdict.found.value:.3g}", verdict.limits)
         table.add_row(*row, "passed" if verdict.passed else "FAILED", escaped(verdict.found.circumstances))
+    return table
+
+
+def _print_result(result: Result, log: Path) -> None:
     if result.verdicts:
-        console.print(table)
-    for line in _why(result):
+        console.print(criteria_table(result.verdicts))
+    for line in why(result.verdicts, result.told):
         typer.echo(escaped(line))
     typer.echo(f"simulated {result.simulated:g} s in {result.wall:.1f} s: {result.factor:.1f} x real time")
     typer.echo(f"log {log}: {result.messages} messages, hash {result.log_hash}")
@@ -94,14 +101,6 @@ def _print_result(result: Result, log: Path) -> None:
         typer.echo(failure, err=True)
     if result.recording_error:
         typer.echo(result.recording_error, err=True)
-
-
-def _why(result: Result) -> Iterator[str]:
-    """What vehicles with failed criteria did: from the first moment on that decided one, or at the end of the run."""
-    failed = [verdict for verdict in result.verdicts if not verdict.passed]
-    for vehicle in dict.fromkeys(verdict.criterion.vehicle for verdict in failed if verdict.criterion.vehicle):
-        moments = [verdict.found.t for verdict in failed if verdict.criterion.vehicle == vehicle and verdict.found.t is not None]
-        yield from result.told.of(vehicle, min(moments, default=None))
 
 
 def _print_campaign(runs: list[SeedRun]) -> None:

@@ -6,6 +6,7 @@ from launch.docs.tables import table
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.planner.params import PlannerParams
 from services.planner.tracker_service import TrackerParams
+from services.slam.elevation.elevation_service import ElevationParams
 from services.slam.mapping_service import MappingParams
 from services.slam.octree.octree_service import OctreeParams
 from uvf.estimation.odometry.params import OdometryParams
@@ -26,6 +27,7 @@ SERVICES: dict[str, tuple[type[Params], str]] = {
     "mapping": (MappingParams, "Map of a ground vehicle, and its pose in it; the method's own parameters stand under its name."),
     "localization": (FilterParams, "Pose of a ground vehicle on a known map."),
     "octree": (OctreeParams, "3-D map; a vehicle that has this block gets one."),
+    "elevation": (ElevationParams, "Heights of the ground below an aircraft; one that has this block maps them."),
     "planner": (PlannerParams, "Exploration and paths of a ground vehicle."),
     "tracker": (TrackerParams, "Follows the path."),
     "autopilot_ground": (GroundAutopilotParams, "Modes and failsafes of a ground vehicle."),

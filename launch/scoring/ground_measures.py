@@ -1,4 +1,4 @@
-"""Measures of ground vehicles, and those that any vehicle has: distance, contacts, pose, map, goals."""
+"""Measures of ground vehicles, and those that any vehicle has: distance, contacts, pose, goals."""
 
 from math import acos, cos, degrees, inf, radians
 
@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from launch.scoring.finding import Finding, largest
 from launch.scoring.recorded_track import RecordedTrack
 from schemas.messages import NavStatus
-from uvf.runtime.messages.mapped_floor import MappedFloor
 
 Floats = NDArray[np.float64]
 TIPPED = radians(60.0)
@@ -83,16 +82,6 @@ def _pose_errors(track: RecordedTrack) -> tuple[Floats, Floats]:
     t = estimated[:, 0]
     true = np.column_stack((t, np.interp(t, p[:, 0], p[:, 1]), np.interp(t, p[:, 0], p[:, 2])))
     return np.linalg.norm(true[:, 1:] - estimated[:, 1:], axis=1), true
-
-
-def mapped_floor(track: RecordedTrack) -> Finding:
-    """Share of the reachable floor that the vehicle's own map knows as free [0 to 1].
-
-    Counts at the end of the run, in the last map. The floor is what the vehicle can reach from its start. 0 without a map.
-    """
-    if track.grid is None:
-        return Finding(0.0, note="there is no map")
-    return Finding(MappedFloor(track.site.world, track.site.members[track.name]).share(track.grid))
 
 
 def goal_time(track: RecordedTrack) -> Finding:

@@ -1,7 +1,9 @@
 """Why a vehicle has not done its mission: its events from where it went wrong on, and what planner and autopilot said at the end."""
 
 from collections import defaultdict, deque
+from collections.abc import Iterator, Sequence
 
+from launch.scoring.scores import Verdict
 from schemas import topics
 from schemas.messages import Event, Mode, NavStatus, VehicleStatus
 from uvf.runtime.bus.interface import Bus, Sample
@@ -46,6 +48,14 @@ class LastWords:
         told = [f"{vehicle} at {t:.1f} s: {text}" for t, text in chosen]
         told += [f"{vehicle} since {t:.1f} s: {text}" for t, text in self._states[vehicle].values()]
         return told or [f"{vehicle}: no event and no status was recorded"]
+
+
+def why(verdicts: Sequence[Verdict], told: LastWords) -> Iterator[str]:
+    """What vehicles with failed criteria did: from the first moment on that decided one, or at the end of the run."""
+    failed = [verdict for verdict in verdicts if not verdict.passed]
+    for vehicle in dict.fromkeys(verdict.criterion.vehicle for verdict in failed if verdict.criterion.vehicle):
+        moments = [verdict.found.t for verdict in failed if verdict.criterion.vehicle == vehicle and verdict.found.t is not None]
+        yield from told.of(vehicle, min(moments, default=None))
 
 
 def event_text(event: Event) -> str:

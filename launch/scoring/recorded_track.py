@@ -40,6 +40,7 @@ class RecordedTrack:
     touching: bool = False
     felt: bool = False
     grid: Grid | None = None
+    heights: bytes | None = None  # the last map of heights, as it came: it is large
     mission: Mission | None = None
     team: "dict[str, RecordedTrack]" = field(default_factory=dict)  # all of the run, this one included
 
@@ -68,6 +69,9 @@ class RecordedTrack:
 
     def _keep_grid(self, t: float, payload: bytes) -> None:
         self.grid = Grid.FromString(payload)
+
+    def _keep_heights(self, t: float, payload: bytes) -> None:
+        self.heights = payload
 
     def _keep_mission(self, t: float, payload: bytes) -> None:
         self.mission = Mission.FromString(payload)
@@ -115,6 +119,7 @@ _KEPT: dict[str, Callable[[RecordedTrack, float, bytes], None]] = {
     "nav/status": RecordedTrack._keep_navigation,
     "sensor/contact": RecordedTrack._keep_contact,
     "map/grid": RecordedTrack._keep_grid,
+    "map/heights": RecordedTrack._keep_heights,
     "mission/plan": RecordedTrack._keep_mission,
     "mission/progress": RecordedTrack._keep_progress,
     "state/events": RecordedTrack._keep_event,
@@ -125,6 +130,7 @@ RECORDED = (
     topics.NAV_STATUS,
     topics.CONTACT,
     topics.MAP,
+    topics.HEIGHTS,
     topics.MISSION,
     topics.PROGRESS,
     topics.EVENTS.by("*"),

@@ -5,13 +5,15 @@ Scores may read ``truth/**``; nothing that drives or flies may.
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from launch.scoring.finding import Finding
 from launch.scoring.flight_measures import separation, spacing_error, speed_at_end, station_error, touchdown_error, touchdown_sink
-from launch.scoring.ground_measures import contacts, crashed, distance_driven, goal_time, mapped_floor, pose_error, pose_error_rms
+from launch.scoring.ground_measures import contacts, crashed, distance_driven, goal_time, pose_error, pose_error_rms
+from launch.scoring.map_measures import height_error, map_f1, mapped_floor
 from launch.scoring.path_measures import altitude_error, circuits, course_error, legs, path_error, waypoint_error
 from launch.scoring.recorded_track import RECORDED, RecordedTrack
 from launch.scoring.route_measures import cross_track_error, waypoints_missed_by
@@ -26,7 +28,7 @@ from uvf.runtime.bus.interface import Bus, Sample
 
 Floats = NDArray[np.float64]
 
-_OF_ALL = (distance_driven, contacts, crashed, pose_error, pose_error_rms, mapped_floor, goal_time)
+_OF_ALL = (distance_driven, contacts, crashed, pose_error, pose_error_rms, mapped_floor, map_f1, height_error, goal_time)
 _OF_MISSIONS = (circuits, legs, path_error, altitude_error, waypoint_error, course_error, waypoints_missed_by, cross_track_error)
 _OF_FLIGHTS = (separation, spacing_error, station_error, touchdown_sink, touchdown_error, speed_at_end)
 MEASURES: dict[str, Callable[[RecordedTrack], Finding]] = {f.__name__: f for f in (*_OF_ALL, *_OF_MISSIONS, *_OF_FLIGHTS)}
@@ -96,6 +98,12 @@ class Verdict:
         """Whether the value is within the criterion's limits."""
         low, high = self.criterion.at_least, self.criterion.at_most
         return (low is None or self.found.value >= low) and (high is None or self.found.value <= high)
+
+    @property
+    def margin(self) -> float:
+        """How far the value is within the nearest limit, in the measure's unit; negative when it is beyond."""
+        low, high = self.criterion.at_least, self.criterion.at_most
+        return min(self.found.value - low if low is not None else inf, high - self.found.value if high is not None else inf)
 
     @property
     def subject(self) -> str:

@@ -38,17 +38,20 @@ def save_picture(world: WorldFile, plan: FloorPlan, reachable: Mask, path: Path)
     """Draws a PNG: occupied cells dark, reachable floor (rows, columns) light green, things in their colours."""
     figure = Figure(figsize=(15, 6.5), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.35))
-    _draw_plan(left, world, plan, reachable)
+    draw_plan(left, world, plan, reachable)
+    left.set_title(f"green: reachable, dark: occupied, dashed: moved by script ({plan.resolution:g} m cells)", fontsize=9)
     right.imshow(view(world))
     right.set_axis_off()
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=80)
 
 
-def _draw_plan(axes: Axes, world: WorldFile, plan: FloorPlan, reachable: Mask) -> None:
+def draw_plan(axes: Axes, world: WorldFile, plan: FloorPlan, reachable: Mask | None) -> None:
+    """Draws the floor plan of a world with its things from above; reachable: floor (rows, columns) drawn green, if any."""
     rows, columns = plan.cells.shape
     shown = np.full((rows, columns, 3), 0.8)
-    shown[reachable] = (0.86, 0.95, 0.86)
+    if reachable is not None:
+        shown[reachable] = (0.86, 0.95, 0.86)
     shown[plan.cells] = (0.25, 0.25, 0.28)
     far = (plan.x, plan.x + columns * plan.resolution, plan.y, plan.y + rows * plan.resolution)
     axes.imshow(shown, origin="lower", extent=far, interpolation="nearest")
@@ -63,7 +66,6 @@ def _draw_plan(axes: Axes, world: WorldFile, plan: FloorPlan, reachable: Mask) -
     axes.set_ylim(far[2:])
     axes.set_xlabel("x [m]")
     axes.set_ylabel("y [m]")
-    axes.set_title(f"green: reachable, dark: occupied, dashed: moved by script ({plan.resolution:g} m cells)", fontsize=9)
 
 
 def _draw_solid(axes: Axes, solid: Solid) -> None:

@@ -27,7 +27,7 @@ from foxglove_schemas_protobuf import Pose_pb2 as foxglove_dot_Pose__pb2
 from google.protobuf import timestamp_pb2 as google_dot_protobuf_dot_timestamp__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x10uvf/v1/map.proto\x12\x06uvf.v1\x1a\x13\x66oxglove/Grid.proto\x1a\x13\x66oxglove/Pose.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"K\n\x0eSaveMapRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0c\n\x04mode\x18\x02 \x01(\t\x12\x0e\n\x06source\x18\x03 \x01(\t\x12\r\n\x05layer\x18\x04 \x01(\t\"+\n\nMapRequest\x12\r\n\x05layer\x18\x01 \x01(\t\x12\x0e\n\x06source\x18\x02 \x01(\t\"J\n\x08MapReply\x12\x10\n\x08\x61\x63\x63\x65pted\x18\x01 \x01(\x08\x12\x0e\n\x06reason\x18\x02 \x01(\t\x12\x1c\n\x04grid\x18\x03 \x01(\x0b\x32\x0e.foxglove.Grid\"\x7f\n\x06MapFix\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\t\n\x01x\x18\x02 \x01(\x01\x12\t\n\x01y\x18\x03 \x01(\x01\x12\x0b\n\x03yaw\x18\x04 \x01(\x01\x12\x12\n\ncovariance\x18\x05 \x03(\x01\x12\x0f\n\x07quality\x18\x06 \x01(\x01\"g\n\x0cPlaceRequest\x12\x1c\n\x04pose\x18\x01 \x01(\x0b\x32\x0e.foxglove.Pose\x12\x16\n\x0eposition_sigma\x18\x02 \x01(\x01\x12\x11\n\tyaw_sigma\x18\x03 \x01(\x01\x12\x0e\n\x06source\x18\x04 \x01(\t\"#\n\x11RelocalizeRequest\x12\x0e\n\x06source\x18\x01 \x01(\t\"I\n\nMapSession\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0c\n\x04\x64\x61ta\x18\x02 \x01(\x0c\"\x89\x01\n\x0eMappingRequest\x12-\n\x06\x61\x63tion\x18\x01 \x01(\x0e\x32\x1d.uvf.v1.MappingRequest.Action\x12\x0e\n\x06method\x18\x02 \x01(\t\x12\x0e\n\x06source\x18\x03 \x01(\t\"(\n\x06\x41\x63tion\x12\x08\n\x04HOLD\x10\x00\x12\t\n\x05GO_ON\x10\x01\x12\t\n\x05\x42\x45GIN\x10\x02\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x10uvf/v1/map.proto\x12\x06uvf.v1\x1a\x13\x66oxglove/Grid.proto\x1a\x13\x66oxglove/Pose.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"K\n\x0eSaveMapRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0c\n\x04mode\x18\x02 \x01(\t\x12\x0e\n\x06source\x18\x03 \x01(\t\x12\r\n\x05layer\x18\x04 \x01(\t\"9\n\nMapRequest\x12\r\n\x05layer\x18\x01 \x01(\t\x12\x0e\n\x06source\x18\x02 \x01(\t\x12\x0c\n\x04\x61rea\x18\x03 \x03(\x01\"J\n\x08MapReply\x12\x10\n\x08\x61\x63\x63\x65pted\x18\x01 \x01(\x08\x12\x0e\n\x06reason\x18\x02 \x01(\t\x12\x1c\n\x04grid\x18\x03 \x01(\x0b\x32\x0e.foxglove.Grid\"\x7f\n\x06MapFix\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\t\n\x01x\x18\x02 \x01(\x01\x12\t\n\x01y\x18\x03 \x01(\x01\x12\x0b\n\x03yaw\x18\x04 \x01(\x01\x12\x12\n\ncovariance\x18\x05 \x03(\x01\x12\x0f\n\x07quality\x18\x06 \x01(\x01\"g\n\x0cPlaceRequest\x12\x1c\n\x04pose\x18\x01 \x01(\x0b\x32\x0e.foxglove.Pose\x12\x16\n\x0eposition_sigma\x18\x02 \x01(\x01\x12\x11\n\tyaw_sigma\x18\x03 \x01(\x01\x12\x0e\n\x06source\x18\x04 \x01(\t\"#\n\x11RelocalizeRequest\x12\x0e\n\x06source\x18\x01 \x01(\t\"I\n\nMapSession\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0c\n\x04\x64\x61ta\x18\x02 \x01(\x0c\"\x89\x01\n\x0eMappingRequest\x12-\n\x06\x61\x63tion\x18\x01 \x01(\x0e\x32\x1d.uvf.v1.MappingRequest.Action\x12\x0e\n\x06method\x18\x02 \x01(\t\x12\x0e\n\x06source\x18\x03 \x01(\t\"(\n\x06\x41\x63tion\x12\x08\n\x04HOLD\x10\x00\x12\t\n\x05GO_ON\x10\x01\x12\t\n\x05\x42\x45GIN\x10\x02\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -37,19 +37,19 @@ if not _descriptor._USE_C_DESCRIPTORS:
   _globals['_SAVEMAPREQUEST']._serialized_start=103
   _globals['_SAVEMAPREQUEST']._serialized_end=178
   _globals['_MAPREQUEST']._serialized_start=180
-  _globals['_MAPREQUEST']._serialized_end=223
-  _globals['_MAPREPLY']._serialized_start=225
-  _globals['_MAPREPLY']._serialized_end=299
-  _globals['_MAPFIX']._serialized_start=301
-  _globals['_MAPFIX']._serialized_end=428
-  _globals['_PLACEREQUEST']._serialized_start=430
-  _globals['_PLACEREQUEST']._serialized_end=533
-  _globals['_RELOCALIZEREQUEST']._serialized_start=535
-  _globals['_RELOCALIZEREQUEST']._serialized_end=570
-  _globals['_MAPSESSION']._serialized_start=572
-  _globals['_MAPSESSION']._serialized_end=645
-  _globals['_MAPPINGREQUEST']._serialized_start=648
-  _globals['_MAPPINGREQUEST']._serialized_end=785
-  _globals['_MAPPINGREQUEST_ACTION']._serialized_start=745
-  _globals['_MAPPINGREQUEST_ACTION']._serialized_end=785
+  _globals['_MAPREQUEST']._serialized_end=237
+  _globals['_MAPREPLY']._serialized_start=239
+  _globals['_MAPREPLY']._serialized_end=313
+  _globals['_MAPFIX']._serialized_start=315
+  _globals['_MAPFIX']._serialized_end=442
+  _globals['_PLACEREQUEST']._serialized_start=444
+  _globals['_PLACEREQUEST']._serialized_end=547
+  _globals['_RELOCALIZEREQUEST']._serialized_start=549
+  _globals['_RELOCALIZEREQUEST']._serialized_end=584
+  _globals['_MAPSESSION']._serialized_start=586
+  _globals['_MAPSESSION']._serialized_end=659
+  _globals['_MAPPINGREQUEST']._serialized_start=662
+  _globals['_MAPPINGREQUEST']._serialized_end=799
+  _globals['_MAPPINGREQUEST_ACTION']._serialized_start=759
+  _globals['_MAPPINGREQUEST_ACTION']._serialized_end=799
 # @@protoc_insertion_point(module_scope)

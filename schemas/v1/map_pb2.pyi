@@ -22,12 +22,14 @@ class SaveMapRequest(_message.Message):
     def __init__(self, name: _Optional[str] = ..., mode: _Optional[str] = ..., source: _Optional[str] = ..., layer: _Optional[str] = ...) -> None: ...
 
 class MapRequest(_message.Message):
-    __slots__ = ("layer", "source")
+    __slots__ = ("layer", "source", "area")
     LAYER_FIELD_NUMBER: _ClassVar[int]
     SOURCE_FIELD_NUMBER: _ClassVar[int]
+    AREA_FIELD_NUMBER: _ClassVar[int]
     layer: str
     source: str
-    def __init__(self, layer: _Optional[str] = ..., source: _Optional[str] = ...) -> None: ...
+    area: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, layer: _Optional[str] = ..., source: _Optional[str] = ..., area: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class MapReply(_message.Message):
     __slots__ = ("accepted", "reason", "grid")

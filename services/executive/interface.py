@@ -8,6 +8,9 @@ from schemas.messages import (
     Event,
     FollowRequest,
     GoalRequest,
+    Grid,
+    MapReply,
+    MapRequest,
     MissionProgress,
     ModeRequest,
     NavStatus,
@@ -41,15 +44,17 @@ class Inputs(Reads):
     follow: list[Answer[FollowRequest, Reply]] = answers(topics.FOLLOW)
     preview: list[Answer[PreviewRequest, PreviewReply]] = answers(topics.PREVIEW)
     save_map: list[Answer[SaveMapRequest, Reply]] = answers(topics.SAVE_MAP)
+    get_map: list[Answer[MapRequest, MapReply]] = answers(topics.GET_MAP)
     cancel: list[Answer[CancelRequest, Reply]] = answers(topics.CANCEL)
 
 
 class Outputs(Writes):
-    """How far the tasks are, requests to vehicles, and velocities of recorded drives."""
+    """How far the tasks are, requests to vehicles, velocities of recorded drives, and maps that are handed over."""
 
     tasks: Tasks | None = topic(topics.TASKS)
     events: list[Event] | None = topic(topics.SYSTEM_EVENTS.by(SOURCE))
     drive: dict[str, DriveCommand] | None = topic(topics.DRIVE.by(SOURCE))
+    shared: dict[str, Grid] | None = topic(topics.SHARED_MAP)
     arm: dict[str, ArmRequest] | None = call(topics.ARM)
     mode: dict[str, ModeRequest] | None = call(topics.SET_MODE)
     goal: dict[str, GoalRequest] | None = call(topics.GOAL)
@@ -57,4 +62,5 @@ class Outputs(Writes):
     follow: dict[str, FollowRequest] | None = call(topics.FOLLOW)
     preview: dict[str, list[PreviewRequest]] | None = call(topics.PREVIEW)
     save_map: dict[str, SaveMapRequest] | None = call(topics.SAVE_MAP)
+    get_map: dict[str, MapRequest] | None = call(topics.GET_MAP)
     cancel: dict[str, CancelRequest] | None = call(topics.CANCEL)

@@ -8,7 +8,7 @@ from schemas.messages import Mode, TaskStatus
 from services.executive.actions.action import ArmAction, ChangeModeAction, TaskAction
 from services.executive.actions.driving import FlyToAction, FollowAction, GoalAction, RouteAction
 from services.executive.actions.joystick import DriveAction, DriveTrack
-from services.executive.actions.maps import SaveMapAction
+from services.executive.actions.maps import SaveMapAction, ShareMapAction
 from services.executive.actions.missions import ExploreAction, MissionAction
 from services.executive.actions.visiting import VisitAction
 from services.executive.situation import TeamSituation
@@ -63,6 +63,8 @@ class Planter:
         if task.save_map is not None:
             wanted, names = task.save_map, who(task.save_map.vehicle)
             return [SaveMapAction(name, wanted.name if len(names) == 1 else f"{wanted.name}_{name}", wanted.layer) for name in names]
+        if task.share_map is not None:
+            return [ShareMapAction(task.share_map, who(task.share_map.to))]
         return self._drives(task)
 
     def _drives(self, task: Task) -> list[TaskAction]:

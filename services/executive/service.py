@@ -64,7 +64,7 @@ class Executive(Service):
         if self._state == TaskStatus.RUNNING:
             self._tree.tick_once()
             self._state = STATES.get(self._tree.status, TaskStatus.RUNNING)
-        out = self.Outputs(drive=situation.drive or None, events=self._events(t))
+        out = self.Outputs(drive=situation.drive or None, shared=situation.shared or None, events=self._events(t))
         if out.events or self._steps % TOLD_EVERY == 0:
             out.tasks = Tasks(timestamp=stamp(t), state=self._state, tasks=self._records)
         self._steps += 1

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import hypot
 
-from schemas.messages import DriveCommand, Mode, TaskStatus
+from schemas.messages import DriveCommand, Grid, Mode, TaskStatus
 from services.executive.asking import PendingRequests
 from services.executive.interface import Inputs
 from uvf.models.mission.task_check import members_of
@@ -26,12 +26,14 @@ class TeamSituation:
     t: float = 0.0
     now: Inputs = field(default_factory=Inputs)
     drive: dict[str, DriveCommand] = field(default_factory=dict)
+    shared: dict[str, Grid] = field(default_factory=dict)
+    """Maps that are handed over in this step, by who gets them."""
     given_up: dict[str, str] = field(default_factory=dict)
     """Why a vehicle's planner has given up its goal last."""
 
     def begin(self, t: float, now: Inputs) -> None:
         """Begins a step."""
-        self.t, self.now, self.drive = t, now, {}
+        self.t, self.now, self.drive, self.shared = t, now, {}, {}
         for vehicle, events in now.told.items():
             for event in events:
                 if "given up" in event.text:

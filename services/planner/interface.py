@@ -47,6 +47,7 @@ class Inputs(Reads):
     team_nav: dict[str, NavStatus] = each_vehicle(optional(topics.NAV_STATUS))
     report: NavReport | None = optional(topics.NAV_REPORT)
     keep_out: Grid | None = optional(topics.KEEP_OUT)
+    shared: Grid | None = optional(topics.SHARED_MAP)
     status: VehicleStatus | None = optional(topics.STATUS)
     mission: Mission | None = optional(topics.MISSION)
     progress: MissionProgress | None = optional(topics.PROGRESS)

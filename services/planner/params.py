@@ -35,6 +35,8 @@ class PlannerParams(Params, frozen=True):
     inflation_radius: Annotated[Positive, key("m", "Distance from obstacles beyond which a path costs no more.")] = 0.55
     cost_scaling_factor: Annotated[Positive, key("1/m", "Rate at which the cost decays with the distance from an obstacle.")] = 6.0
     cost_travel_multiplier: Annotated[float, Meta(ge=0), key("", "Weight of costs beside length; 0: the shortest path.")] = 5.0
+    max_step: Annotated[Positive, key("m", "Step that is an obstacle, in a map of heights that another vehicle has made.")] = 0.3
+    max_slope: Annotated[float, Meta(gt=0, lt=1.5), key("rad", "Slope that is an obstacle, in such a map.")] = 0.35
     goal_tolerance: Annotated[Positive, key("m", "Distance at which a goal is reached.")] = 0.12
     look_tolerance: Annotated[Positive, key("m", "Distance at which a frontier is reached; it only has to be seen.")] = 0.3
     wait_at_goal: Annotated[float, Meta(ge=0), key("s", "Time at an operator's goal, reached or cancelled, before the job continues.")] = (

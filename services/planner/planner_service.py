@@ -27,6 +27,7 @@ from services.planner.team import Teammates
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose
 from uvf.planning.costmap.inflation import Inflation
+from uvf.planning.costmap.terrain import TerrainLimits
 from uvf.planning.frontiers import FrontierChoice, FrontierWeights
 from uvf.planning.global_planner import NO_PLACE, GlobalPlanner, PlannedBody
 from uvf.planning.navigation.directive import Directive
@@ -98,6 +99,8 @@ class PlannerService(Service):
             return self.stale(t, ("pose",))
         self._fit()
         self._ground.keep_out(now.keep_out)
+        if fault := self._ground.share(now.shared, TerrainLimits(self.params.max_step, self.params.max_slope)):
+            self._tell(t, "the map of another vehicle is left out", fault, Event.WARNING)
         changed = self._ground.look(t, now.map, now.scan, OtherReadings(now.depth, now.info, now.sonar, now.contact))
         self._team.hear(now.team, now.team_nav, now.team_path)
         self._book.team = self._team.places

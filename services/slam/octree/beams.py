@@ -1,25 +1,14 @@
 """Pictures and sweeps as beams in the sensor's frame: unit directions and how far each one saw."""
 
-from typing import NamedTuple
-
 import numpy as np
-from numpy.typing import NDArray
 
 from schemas.messages import CameraCalibration, CompressedImage, LaserScan
+from services.slam.waiting_beams import RayBundle
 from uvf.runtime.messages.convert import scan_rays
 from uvf.runtime.messages.depth_pictures import depth_rays
 
-Floats = NDArray[np.float64]
-
 BEYOND = 2.0
 """A beam without a return is taken to end at so many times the reach: it is free as far as there, and has met nothing."""
-
-
-class RayBundle(NamedTuple):
-    """Beams. ends: (n, 3) [m] in the sensor's frame; reach [m]: a beam that ends farther away has met nothing."""
-
-    ends: Floats
-    reach: float
 
 
 def depth_beams(picture: CompressedImage, info: CameraCalibration, reach: float) -> RayBundle:

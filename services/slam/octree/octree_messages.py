@@ -1,9 +1,8 @@
 """The octree and what is seen of it from above as messages."""
 
-import numpy as np
-
-from schemas.messages import Grid, OctreeMap, PackedElementField
+from schemas.messages import Grid, OctreeMap
 from uvf.runtime.messages.convert import occupancy_grid, stamp
+from uvf.runtime.messages.height_grids import heights_message
 from uvf.slam.octree.columns import Columns
 from uvf.slam.octree.files import read_octree, to_bt
 from uvf.slam.octree.leaves import DEPTH, coarser, leaves_of
@@ -33,11 +32,6 @@ def slice_message(columns: Columns, t: float) -> Grid:
     return occupancy_grid(columns.slice, columns.resolution, columns.x, columns.y, FRAME, t)
 
 
-def heights_message(columns: Columns, t: float) -> Grid:
-    """The grid of heights ``top`` and ``ground`` [m, world], two numbers a cell, stamped ``t`` [s]."""
-    grid = occupancy_grid(columns.slice, columns.resolution, columns.x, columns.y, FRAME, t)
-    grid.cell_stride, grid.row_stride = 8, 8 * grid.column_count
-    del grid.fields[:]
-    grid.fields.extend(PackedElementField(name=n, offset=o, type=PackedElementField.FLOAT32) for n, o in (("top", 0), ("ground", 4)))
-    grid.data = np.stack((columns.top, columns.ground), axis=2).astype("<f4").tobytes()
-    return grid
+def heights_of_columns(columns: Columns, t: float) -> Grid:
+    """The grid of heights stamped ``t`` [s]."""
+    return heights_message(columns.top, columns.ground, columns.resolution, (columns.x, columns.y), t)

@@ -1,10 +1,9 @@
 """Depth pictures, lidar sweeps and frames -> a map in space, and what a ground vehicle needs of it."""
 
 import re
-from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 import numpy as np
 from msgspec import Meta
@@ -12,9 +11,9 @@ from numpy.typing import NDArray
 
 from schemas import topics
 from schemas.messages import CameraCalibration, CompressedImage, Event, Grid, LaserScan, OctreeMap, OctreeSaveRequest, Reply
-from services.slam.octree.beams import RayBundle, depth_beams, sweep_beams
-from services.slam.octree.octree_messages import FRAME, heights_message, octree_from, octree_message, slice_message
-from uvf.maths.se3 import apply
+from services.slam.octree.beams import depth_beams, sweep_beams
+from services.slam.octree.octree_messages import heights_of_columns, octree_from, octree_message, slice_message
+from services.slam.waiting_beams import WaitingBeams
 from uvf.models.keys import key
 from uvf.models.params import Params
 from uvf.models.vehicle.sensors import Sensors
@@ -22,7 +21,7 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.declaration import Reads, Writes, every, frames, optional, replies, request, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import seconds, stamp
-from uvf.runtime.messages.frames import FrameBuffer, FrameError
+from uvf.runtime.messages.frames import FrameBuffer
 from uvf.sensors.fitted import sweeping_of
 from uvf.sensors.sweeping import SweepSegment
 from uvf.slam.octree.columns import columns_of
@@ -34,8 +33,6 @@ Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
 Height = Annotated[float, Meta(ge=-10000, le=10000)]
 
-PATIENCE = 2.0  # s that a picture or sweep waits until it is known where it was taken, and without any that is, until this is told
-WAITING_MOST = 256
 MESSAGE_MOST = 2_000_000  # bytes of the map's file in a message
 COLUMNS_MOST = 1_000_000
 MEMORY_MOST = 2_000_000_000  # bytes of the map
@@ -51,20 +48,6 @@ class OctreeParams(Params, frozen=True):
     map_period: Annotated[Positive, key("s", "Time between publications.")] = 5.0
     slice_low: Annotated[Height, key("m", "Lower height of the slice that is published as an occupancy grid.")] = 0.05
     slice_high: Annotated[Height, key("m", "Upper height of that slice.")] = 0.5
-
-
-class Taken(NamedTuple):
-    """A picture or sweep that waits for the frames at its time. parts: its beams by when they were measured."""
-
-    parts: list[SweepSegment]
-    frame: str
-    beams: RayBundle
-
-    def placed(self, frames: FrameBuffer) -> tuple[Floats, Floats]:
-        """Origin (3,) and ends (n, 3) of the beams [m, world]; the origin of a sweep is that of its middle. Raises FrameError."""
-        places = [frames.lookup(FRAME, self.frame, part.at) for part in self.parts]
-        ends = [apply(place, self.beams.ends[part.beams]) for place, part in zip(places, self.parts, strict=True)]
-        return places[len(places) // 2].translation, np.concatenate(ends)
 
 
 class OctreeService(Service):
@@ -105,11 +88,10 @@ class OctreeService(Service):
         self._sensors = sensors
         self._keep = keep
         self._octree = Octree(params.resolution)
-        self._waiting: deque[Taken] = deque(maxlen=WAITING_MOST)
+        self._waiting = WaitingBeams()
         self._told: set[str] = set()
         self._changed = False
         self._published_at = float("-inf")
-        self._placed_at = 0.0
 
     def step(self, t: float, now: Inputs) -> Outputs:
         """One cycle at ``t`` [s, simulation]: inserts what has a place by now, and publishes the map when it is due."""
@@ -145,11 +127,11 @@ class OctreeService(Service):
                 except BadInput as error:
                     events += self._tell(t, "a depth picture is left out", str(error))
                 else:
-                    self._waiting.append(Taken([SweepSegment(seconds(picture.timestamp), slice(None))], picture.frame_id, beams))
+                    self._waiting.add([SweepSegment(seconds(picture.timestamp), slice(None))], picture.frame_id, beams)
         if (lidar := self._sensors.lidar) is not None:
             for sweep in scan:
                 beams = sweep_beams(sweep, min(self.params.lidar_reach, lidar.range_max))
-                self._waiting.append(Taken(sweeping_of(lidar).parts(len(sweep.ranges), seconds(sweep.timestamp)), sweep.frame_id, beams))
+                self._waiting.add(sweeping_of(lidar).parts(len(sweep.ranges), seconds(sweep.timestamp)), sweep.frame_id, beams)
         return events
 
     def _place(self, t: float, frames: FrameBuffer) -> list[Event]:
@@ -158,28 +140,17 @@ class OctreeService(Service):
             self._waiting.clear()
             full = f"it takes {MEMORY_MOST / 1e9:g} GB; set a larger 'resolution' or a shorter reach"
             return self._tell(t, "the map is full: nothing is put in any more", full)
-        still: list[Taken] = []
-        reason = ""
-        for taken in self._waiting:
-            try:
-                origin, ends = taken.placed(frames)
-            except FrameError as error:
-                if t - taken.parts[-1].at < PATIENCE:
-                    still.append(taken)
-                else:
-                    reason = str(error)
-                continue
-            self._octree.insert(origin, ends, taken.beams.reach)
-            self._changed, self._placed_at = True, t
-        self._waiting = deque(still, maxlen=WAITING_MOST)
-        return self._tell(t, "pictures or scans cannot be mapped", reason) if reason and t - self._placed_at >= PATIENCE else []
+        for origin, ends, reach in self._waiting.placed(t, frames):
+            self._octree.insert(origin, ends, reach)
+            self._changed = True
+        return self._tell(t, "pictures or scans cannot be mapped", self._waiting.lost) if self._waiting.lost else []
 
     def _draw(self, t: float, out: Outputs) -> None:
         """Raises TooLarge."""
         out.map = octree_message(self._octree, MESSAGE_MOST, t)
         columns = columns_of(self._octree, self.params.slice_low, self.params.slice_high, COLUMNS_MOST)
         if columns is not None:
-            out.slice, out.heights = slice_message(columns, t), heights_message(columns, t)
+            out.slice, out.heights = slice_message(columns, t), heights_of_columns(columns, t)
 
     def _saved(self, request: OctreeSaveRequest) -> tuple[Reply, str]:
         """The answer, and where the file is."""

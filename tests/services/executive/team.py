@@ -4,6 +4,8 @@ from pathlib import Path
 
 from schemas.messages import (
     Event,
+    Grid,
+    MapReply,
     MissionProgress,
     Mode,
     NavStatus,
@@ -53,6 +55,7 @@ class Team:
         self.progress: dict[str, MissionProgress] = {}
         self.told: dict[str, list[Event]] = {}
         self.tasks = None
+        self.map, self.shared = Grid(frame_id="world"), {}
         self._answers: dict[str, list[Answer]] = {}
 
     def made(self) -> Executive:
@@ -68,6 +71,7 @@ class Team:
             self.tasks = out.tasks or self.tasks
             self.events += [event.text for event in out.events or ()]
             self.drives.append({name: (c.linear, c.angular) for name, c in (out.drive or {}).items()})
+            self.shared.update(out.shared or {})
             for name in self.service.calls:
                 for vehicle, messages in (getattr(out, name) or {}).items():
                     for message in messages:
@@ -76,7 +80,11 @@ class Team:
     def _asked(self, name, vehicle, message) -> None:
         self.asked.append((name, vehicle, message))
         why = self.refusals.get((name, vehicle), "")
-        reply = PreviewReply(accepted=not why, reason=why, duration=1.0) if name == "preview" else Reply(accepted=not why, reason=why)
+        reply = Reply(accepted=not why, reason=why)
+        if name == "preview":
+            reply = PreviewReply(accepted=not why, reason=why, duration=1.0)
+        elif name == "get_map":
+            reply = MapReply(accepted=not why, reason=why, grid=self.map)
         self._answers.setdefault(name, []).append(Answer(vehicle, message, reply))
         if why:
             return

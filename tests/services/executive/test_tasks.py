@@ -1,12 +1,16 @@
 """Tasks are done in their order, end as they say, and tell why where they fail."""
 
+import re
+
 import numpy as np
 import pytest
 
-from schemas.messages import MissionProgress, Mode, NavStatus, TaskStatus
+from schemas.messages import Grid, MissionProgress, Mode, NavStatus, TaskStatus
 from services.executive.actions.joystick import DriveTrack
 from services.executive.asking import PATIENCE
 from tests.services.executive.team import Team
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.convert import planar_pose
 
 GOAL = "  - {name: go, goal: {vehicle: anne, x: 4.0, y: 1.7}}\n"
 
@@ -243,3 +247,40 @@ def test_an_executive_that_is_started_again_goes_on_behind_what_was_done(tmp_pat
     team.step(10)
     assert team.requests() == ["goal bert"]
     assert team.states() == ["DONE", "RUNNING"]
+
+
+SHARE = """
+  - {name: share, share_map: {vehicle: carl, to: team, area: [0.0, 0.0, 10.0, 5.0]}}
+"""
+
+
+def test_a_map_is_asked_for_and_handed_over_to_the_whole_team(tmp_path):
+    team = Team(SHARE, tmp_path)
+    team.step(3)
+    ((name, vehicle, request),) = team.asked
+    assert (name, vehicle, request.layer, list(request.area)) == ("get_map", "carl", "heights", [0.0, 0.0, 10.0, 5.0])
+    assert team.states() == ["DONE"] and sorted(team.shared) == ["anne", "bert"]
+
+
+def test_a_map_of_a_vehicles_own_frame_is_handed_over_in_the_world_frame(tmp_path):
+    team = Team(SHARE.replace("vehicle: carl, to: team, area: [0.0, 0.0, 10.0, 5.0]", "vehicle: anne, to: bert, layer: grid"), tmp_path)
+    team.map = Grid(frame_id="anne/map", pose=planar_pose(1.0, -1.0, 0.0))
+    team.step(3)
+    shared = team.shared["bert"]
+    assert (shared.frame_id, shared.pose.position.x, shared.pose.position.y) == ("world", pytest.approx(3.2), pytest.approx(0.3))
+
+
+def test_a_map_that_nobody_has_fails_the_task_with_the_reason(tmp_path):
+    team = Team(SHARE, tmp_path)
+    team.refusals["get_map", "carl"] = "nothing is mapped there yet"
+    team.step(170)
+    assert team.states() == ["FAILED"] and "nothing is mapped there yet" in team.tasks.tasks[0].reason and not team.shared
+
+
+@pytest.mark.parametrize(
+    ("part", "why"),
+    [("to: crl", "no vehicle or role 'crl'; did you mean 'carl'?"), ("to: team, area: [1.0, 0.0, 0.0, 5.0]", "nothing lies in it")],
+)
+def test_a_hand_over_that_cannot_be_is_told_at_the_start(tmp_path, part, why):
+    with pytest.raises(BadInput, match=re.escape(why)):
+        Team(SHARE.replace("to: team, area: [0.0, 0.0, 10.0, 5.0]", part), tmp_path)

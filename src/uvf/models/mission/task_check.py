@@ -66,6 +66,8 @@ def _check_task(task: Task, place: FileLocation, folder: Path) -> None:
         raise BadInput(f"{place.at(verbs[0])}: there are no tasks in it")
     if task.follow is not None and task.until is None:
         raise BadInput(f"{place}: nobody follows to an end: say with until when it is done")
+    if task.share_map is not None and (area := task.share_map.area) is not None and not (area[0] < area[2] and area[1] < area[3]):
+        raise BadInput(f"{place.at('share_map', 'area')}: nothing lies in it; give [x_min, y_min, x_max, y_max]")
     if task.drive is not None and not (folder / task.drive.track).is_file():
         raise BadInput(f"{place.at('drive', 'track')}: there is no file {folder / task.drive.track}")
 
@@ -76,7 +78,7 @@ def _named(task: Task, place: FileLocation) -> Iterator[tuple[Who, FileLocation]
     does = getattr(task, verb, None)
     if isinstance(does, str | list) and verb not in COMPOSITES:
         yield does, place.at(verb)
-    for part in ("vehicle", "leader"):
+    for part in ("vehicle", "leader", "to"):
         if (who := getattr(does, part, None)) is not None:
             yield who, place.at(verb, part)
     for name, condition in (("when", task.when), ("until", task.until)):

@@ -110,6 +110,21 @@ class SaveMapTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ] = "grid"
 
 
+class ShareMapTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Give the map that a vehicle has made to others, who plan by it where their own map shows nothing. Done once they have it."""
+
+    vehicle: Annotated[str, plain("Vehicle whose map it is.")]
+    to: Annotated[Who, plain("Ground vehicles or roles who get it.")]
+    layer: Annotated[
+        Literal["heights", "grid"],
+        plain("`heights`: what an aircraft has mapped from above. `grid`: what a ground vehicle has mapped."),
+    ] = "heights"
+    area: Annotated[
+        tuple[Metres, Metres, Metres, Metres] | None,
+        plain("`[x_min, y_min, x_max, y_max]` in metres, world frame: only so much of the heights. Left out: all of them."),
+    ] = None
+
+
 class VisitTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Share places out among a team so that the last one is visited early, and go there."""
 
@@ -142,6 +157,7 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     follow: Annotated[FollowTask | None, plain("Drive behind another vehicle.")] = None
     drive: Annotated[DriveTask | None, plain("Drive as recorded.")] = None
     save_map: Annotated[SaveMapTask | None, plain("Save a map.")] = None
+    share_map: Annotated[ShareMapTask | None, plain("Give a map to other vehicles.")] = None
 
 
 MODIFIERS = ("name", "when", "until", "within", "repeat")

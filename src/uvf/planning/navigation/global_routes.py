@@ -13,8 +13,9 @@ from uvf.planning.costmap.hidden_obstacles import HiddenObstacles
 from uvf.planning.costmap.inflation import FREE_SPACE, LETHAL
 from uvf.planning.costmap.obstacle_layer import ObstacleLayer
 from uvf.planning.costmap.own_ground import around
+from uvf.planning.costmap.shared_map import SharedMap
 from uvf.planning.costmap.zone_mask import KEPT_OUT, ZoneMask
-from uvf.planning.global_planner import GlobalPlanner
+from uvf.planning.global_planner import MOST_CELLS, GlobalPlanner
 from uvf.planning.navigation.navigator import NavigationGoal, Route
 from uvf.planning.navigation.routes import KnownFree, cells_of, one_after_the_other, still_free
 
@@ -43,6 +44,9 @@ class GlobalRoutes:
         self._trusts_sight = False
         self._known_free = KnownFree()
         self._keep_out: tuple[ZoneMask, Pose2] | None = None
+        self._shared: SharedMap | None = None
+        self.shared_is_too_large = False
+        """Whether another vehicle's map is left out, because both maps together have too many cells."""
         self._shown: bytes | None = None
 
     def keep_out(self, mask: ZoneMask, mask_from_map: Pose2) -> None:
@@ -51,9 +55,19 @@ class GlobalRoutes:
         if self._drawn is not None:
             self.take(*self._drawn)
 
+    def share(self, shared: SharedMap) -> None:
+        """From now on another vehicle's map lies below the own one, unless both together are too large to plan on."""
+        self._shared = shared
+        if self._drawn is not None:
+            self.take(*self._drawn)
+
     def take(self, cells: Cells, frame: Frame) -> None:
         """A new map, (rows, columns) of -1 unknown, 0..100 per cent; frame: resolution [m] and origin [m]."""
         self._drawn, self._shown = (cells, frame), None
+        if self._shared is not None and cells.size:
+            self.shared_is_too_large = self._shared.cells_with(cells.shape, frame) > MOST_CELLS
+            if not self.shared_is_too_large:
+                cells, frame = self._shared.below(cells, frame)
         cells = self._kept_out(cells, frame)
         self._map = cells, frame
         self._walls = ndimage.binary_dilation(cells >= OCCUPIED, WALL)

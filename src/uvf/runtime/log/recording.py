@@ -20,6 +20,7 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.envelope import WRAP, GapCounter
 from uvf.runtime.bus.interface import Bus, Sample
 from uvf.runtime.log.bounds import Admission, Standing
+from uvf.runtime.log.versions import versions
 from uvf.runtime.messages.topic_lookup import MESSAGES, topic_of
 
 CHUNK = 1_000_000  # bytes
@@ -184,7 +185,7 @@ class Recorder:
         complete = str(not self.gaps and not self.refused).lower()
         summary = {"messages": str(self.written), "carried": str(self.carried), "complete": complete, "hash": self.hash.hexdigest()}
         refused = {f"refused {why}": str(n) for why, n in self.refused.items()}
-        return summary | refused | {f"gap {key}": str(n) for key, n in self.gaps.items()}
+        return summary | versions() | refused | {f"gap {key}": str(n) for key, n in self.gaps.items()}
 
 
 def stands(key: str) -> bool:

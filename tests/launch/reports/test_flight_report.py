@@ -8,9 +8,8 @@ from typer.testing import CliRunner
 
 from launch.attachments import attachments
 from launch.cli import app
-from launch.flights.figures import deviation, figures
-from launch.flights.history import histories
-from launch.flights.report import flights
+from launch.reports.flight_figures import deviation, figures
+from launch.reports.recorded_run import recorded_run
 from schemas import topics
 from schemas.messages import Battery, Kind, Mode, NavState, Quaternion, SurfaceCommand, Vector3, VehicleStatus
 from services.autopilot.air import build as autopilot
@@ -62,12 +61,20 @@ def made(tmp_path_factory):
     return write(tmp_path_factory.mktemp("made") / "log-000.mcap", straight_flight())
 
 
+PAGES = {"kite.png", "report.html", "ways.png"}
+
+
+def kite_of(log):
+    with recorded_run(log) as run:
+        return run.vehicles["kite"]
+
+
 def value(history, name):
     return next(f.value for f in figures(history) if f.name == name)
 
 
 def test_the_figures_are_those_of_the_flight(made):
-    kite = histories([made])["kite"]
+    kite = kite_of(made)
     assert value(kite, "over ground") == "2.00 km"
     assert value(kite, "through the air") == "2.20 km"
     assert value(kite, "airspeed") == "22.00 m/s, sd 0.00, 22.0 to 22.0"
@@ -81,28 +88,28 @@ def test_the_figures_are_those_of_the_flight(made):
 
 
 def test_the_true_cross_track_holds_the_error_of_the_estimate(made):
-    off = deviation(histories([made])["kite"])
+    off = deviation(kite_of(made))
     assert off.true_cross_track == pytest.approx(np.full(len(off.t), 1.0 + 3.0), abs=1e-6)
     assert off.wanted == pytest.approx(np.full(len(off.t), 52.0))
 
 
 def test_a_flight_without_truth_is_reported_on_by_its_estimate(made, tmp_path):
     log = write(tmp_path / "log.mcap", (s for s in read_log(made) if "/truth/" not in s.key))
-    kite = histories([log])["kite"]
+    kite = kite_of(log)
     assert value(kite, "over ground") == "2.00 km"
     assert not any(f.name.startswith(("estimate", "cross-track, truth")) for f in figures(kite))
-    assert reported(log) == {"kite.png", "report.md"}
+    assert reported(log) == PAGES
 
 
 def test_a_log_that_was_cut_off_is_reported_on_as_far_as_it_goes(made, tmp_path):
     whole, log = made.read_bytes(), tmp_path / "log-000.mcap"
     log.write_bytes(whole[: len(whole) * 2 // 3])
-    assert 10 < histories([log])["kite"].estimate.t[-1] < 99
-    assert reported(tmp_path) == {"kite.png", "report.md"}
+    assert 10 < kite_of(log).estimate.t[-1] < 99
+    assert reported(tmp_path) == PAGES
 
 
 def test_what_is_sent_often_is_thinned_out_and_peaks_stay_on_the_page(made):
-    kite = histories([made])["kite"]
+    kite = kite_of(made)
     assert len(kite.estimate.t) == 1000
     kite.heard("nav/state", sample(topics.NAV_STATE, state(0, 0, False), 99.95))
     assert len(kite.estimate.t) == 1000
@@ -112,7 +119,7 @@ def test_what_is_sent_often_is_thinned_out_and_peaks_stay_on_the_page(made):
 def test_any_part_of_an_aircrafts_messages_gives_a_page(made, tmp_path, kept):
     command = sample(topics.SURFACE_COMMAND, SurfaceCommand(), 0.0)
     log = write(tmp_path / "log.mcap", [command, *(s for s in read_log(made) if s.key.endswith(kept))])
-    assert reported(log) == {"kite.png", "report.md"}
+    assert reported(log) == PAGES
 
 
 def reported(run):
@@ -132,8 +139,8 @@ def test_a_recorded_run_of_the_demo_is_reported_on(tmp_path):
     lockstep.close()
     done = CliRunner().invoke(app, ["report", str(tmp_path), "--out", str(tmp_path / "out")])
     assert done.exit_code == 0, done.output
-    text = (tmp_path / "out" / "report.md").read_text()
-    assert "## milvus" in text and "| in the air | 12 s |" in text and "burger" not in text
+    text = (tmp_path / "out" / "report.html").read_text()
+    assert ">milvus</h2>" in text and "<td>in the air</td><td>12 s</td>" in text and "burger</h2>" not in text
     assert (tmp_path / "out" / "milvus.png").stat().st_size > 50_000
 
 
@@ -141,18 +148,17 @@ def test_the_files_of_a_run_are_one_flight(made, tmp_path):
     halves = {"log-000.mcap": lambda t: t < 50, "log-001.mcap": lambda t: t >= 50}
     for name, within in halves.items():
         write(tmp_path / name, (s for s in read_log(made) if within(s.stamp_ns / 1e9)))
-    (kite,) = flights(tmp_path)
-    assert value(kite, "over ground") == "2.00 km"
+    assert value(kite_of(tmp_path), "over ground") == "2.00 km"
 
 
 def test_bad_input_is_one_line(made, tmp_path):
     (tmp_path / "empty").mkdir()
-    rover = write(tmp_path / "rover.mcap", (s for s in read_log(made) if s.key.endswith("truth/state")))
+    nobody = write(tmp_path / "nobody.mcap", [])
     (tmp_path / "file").write_text("")
     for arguments, said in (
         ([str(tmp_path / "empty")], "no log-*.mcap"),
         ([str(tmp_path / "none.mcap")], "no run"),
-        ([str(rover)], "no aircraft"),
+        ([str(nobody)], "no vehicle"),
         ([str(shutil.copy(made, tmp_path / "log.mcap")), "--out", str(tmp_path / "file" / "x")], "--out"),
     ):
         done = CliRunner().invoke(app, ["report", *arguments])
@@ -165,4 +171,6 @@ def test_what_strangers_have_put_into_the_log_does_not_end_the_report(tmp_path):
     stray = [good[0]._replace(key=key) for key in ("uvf/kite", "uvf/kite/", "uvf//nav/state")]
     log = write(tmp_path / "a.mcap", [*good, *broken, *stray])
     clean = write(tmp_path / "b.mcap", good)
-    assert figures(flights(log)[0]) == figures(flights(clean)[0])
+    with recorded_run(log) as run:
+        assert list(run.vehicles) == ["kite"]
+    assert figures(kite_of(log)) == figures(kite_of(clean))

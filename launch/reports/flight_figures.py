@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from launch.flights.history import FlownMotion, History
+from launch.reports.history import FlownMotion, History
 from schemas.messages import Event, Mode
 
 Floats = NDArray[np.float64]

@@ -1,23 +1,34 @@
-"""What a log tells of each aircraft, as arrays over time: thinned out while it is read, so that hours fit into memory."""
+"""What a log tells of each vehicle, as arrays over time: thinned out while it is read, so that hours fit into memory."""
 
-import contextlib
-import tempfile
 from array import array
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import Battery, Event, Kind, Mission, MissionProgress, NavState, PosesInFrame, SurfaceCommand, VehicleStatus
-from schemas.topics import SYSTEM
-from uvf.models.yaml_data import BadInput
+from schemas.messages import (
+    Battery,
+    Contact,
+    DriveCommand,
+    Event,
+    Grid,
+    Kind,
+    Mission,
+    MissionProgress,
+    NavState,
+    NavStatus,
+    Odometry,
+    ParamValues,
+    PoseInFrame,
+    PosesInFrame,
+    SurfaceCommand,
+    VehicleStatus,
+)
 from uvf.runtime.bus.interface import Sample
-from uvf.runtime.bus.wire import Malformed, decode_sample
-from uvf.runtime.log.reading import log_metadata, read_log
-from uvf.runtime.log.recovery import recover
+from uvf.runtime.bus.wire import decode_sample
+from uvf.runtime.messages.convert import pose2_of
 
 Floats = NDArray[np.float64]
 
@@ -51,7 +62,14 @@ STREAMS = {
     "actuator/surfaces": RecordedStream(SurfaceCommand, lambda m: (m.aileron, m.elevator, m.rudder, m.throttle, m.flap), 5, 0.0),
     "sensor/battery": RecordedStream(Battery, lambda m: (m.voltage, m.current, m.remaining), 3),
     "mission/progress": RecordedStream(MissionProgress, lambda m: (m.reached, m.laps), 2, 0.0),
+    "nav/pose": RecordedStream(PoseInFrame, lambda m: tuple(pose2_of(m.pose)), 3),
+    "nav/odometry": RecordedStream(Odometry, lambda m: (m.linear_velocity.x, m.angular_velocity.z), 2),
+    "nav/status": RecordedStream(NavStatus, lambda m: (m.state, m.distance_left, m.explored, m.recoveries), 4, 0.0),
+    "sensor/contact": RecordedStream(Contact, lambda m: (float(m.touching),), 1, 0.0),
 }
+DRIVES = RecordedStream(DriveCommand, lambda m: (m.linear, m.angular), 2, 0.0)
+"""``cmd/<source>``, of the source that the vehicle obeys at the time."""
+MAPS = ("map/grid", "map/team", "map/heights", "map/shared")
 
 
 class Series:
@@ -115,8 +133,13 @@ class History:
     series: dict[str, Series] = field(default_factory=lambda: {key: Series(s.width) for key, s in STREAMS.items()})
     events: list[tuple[float, Event]] = field(default_factory=list)
     plans: list[Mission] = field(default_factory=list)
-    path: PosesInFrame | None = None  # the first one that is flown
+    path: PosesInFrame | None = None  # the first one that is followed
     kind: int = Kind.KIND_UNSPECIFIED
+    command_source: str = ""
+    drives: Series = field(default_factory=lambda: Series(2))
+    navigation: list[tuple[float, NavStatus]] = field(default_factory=list)  # at each change of job, goal, state or reason
+    maps: dict[str, bytes] = field(default_factory=dict)  # the last message of each of MAPS
+    params: dict[str, ParamValues] = field(default_factory=dict)  # of each service, the last ones
 
     def heard(self, name: str, sample: Sample) -> None:
         """Stores a sample of the topic ``name`` (without the vehicle). Raises Malformed."""
@@ -125,7 +148,17 @@ class History:
             stream = STREAMS[name]
             message = decode_sample(sample, stream.message)
             self.series[name].add(t, stream.numbers(message), stream.period)
-            self.kind = message.kind if name == "state/vehicle" else self.kind
+            if isinstance(message, VehicleStatus):
+                self.kind, self.command_source = message.kind, message.command_source
+            elif isinstance(message, NavStatus) and (not self.navigation or _is_news(self.navigation[-1][1], message)):
+                self.navigation.append((t, message))
+        elif name == f"cmd/{self.command_source}":
+            self.drives.add(t, DRIVES.numbers(decode_sample(sample, DRIVES.message)), DRIVES.period)
+        elif name in MAPS:
+            decode_sample(sample, Grid)
+            self.maps[name] = sample.payload
+        elif name.startswith("state/params/"):
+            self.params[name.removeprefix("state/params/")] = decode_sample(sample, ParamValues)
         elif name.startswith("state/events/"):
             self.events.append((t, decode_sample(sample, Event)))
         elif name == "mission/plan":
@@ -156,29 +189,8 @@ class History:
         return motion(rows) if len(rows) > 1 else None
 
 
-def histories(logs: list[Path]) -> dict[str, History]:
-    """The history of each vehicle, sorted by name. A file that was cut off is read as far as it is whole. Raises BadInput."""
-    found: dict[str, History] = {}
-    for log in logs:
-        for sample in _samples(log):
-            _, owner, *name = sample.key.split("/", 2)
-            if owner == SYSTEM or not name:
-                continue
-            # What is broken or of another type was refused by every service, too.
-            with contextlib.suppress(Malformed):
-                found.setdefault(owner, History(owner)).heard(name[0], sample)
-    return dict(sorted(found.items()))
+def _is_news(before: NavStatus, now: NavStatus) -> bool:
+    def said(status: NavStatus) -> tuple[object, ...]:
+        return status.job, status.state, status.goal.x, status.goal.y, status.reason
 
-
-def _samples(log: Path) -> Iterator[Sample]:
-    try:
-        log_metadata(log)
-    except BadInput as error:
-        if "cut off" not in str(error):
-            raise
-        with tempfile.TemporaryDirectory() as folder:
-            whole = Path(folder) / "log.mcap"
-            recover(log, whole)
-            yield from read_log(whole)
-        return
-    yield from read_log(log)
+    return said(before) != said(now)

@@ -1,0 +1,114 @@
+"""Everything that a report needs of a run, read from its logs in one go."""
+
+import contextlib
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from launch.reports.history import History
+from launch.reports.traffic import Traffic
+from launch.scoring.last_words import LastWords
+from launch.scoring.scores import Scorer, Verdict
+from schemas import topics
+from schemas.messages import Event, Tasks, TaskStatus
+from schemas.topics import SYSTEM
+from uvf.models.names import VEHICLE
+from uvf.models.scenario import Scenario
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.bus.interface import Sample
+from uvf.runtime.bus.wire import Malformed, decode_sample
+from uvf.runtime.log.folder import logs_of
+from uvf.runtime.log.reading import log_metadata
+from uvf.runtime.log.replay import logged_site
+from uvf.runtime.log.run_samples import run_samples
+from uvf.runtime.messages.step_times import NS
+from uvf.runtime.messages.topic_lookup import topic_of
+
+
+@dataclass(frozen=True)
+class ReportedEvent:
+    """An event: when [s, simulation], whose ('system' or a vehicle), and the event."""
+
+    t: float
+    owner: str
+    event: Event
+
+
+@dataclass
+class RecordedRun:
+    """What was recorded of one run."""
+
+    path: Path
+    site: Scenario | None
+    """None where no mission that could be read is attached to the log."""
+    note: str = ""
+    """Why there is no site."""
+    metadata: dict[str, str] = field(default_factory=dict)
+    vehicles: dict[str, History] = field(default_factory=dict)
+    events: list[ReportedEvent] = field(default_factory=list)
+    tasks: list[TaskStatus] = field(default_factory=list)
+    """At the end, each before its parts."""
+    begun: dict[int, float] = field(default_factory=dict)
+    """When [s] each of them began to run, by its place in ``tasks``."""
+    traffic: Traffic = field(default_factory=Traffic)
+    told: LastWords = field(default_factory=LastWords)
+    verdicts: list[Verdict] = field(default_factory=list)
+    end: float = 0.0  # s
+
+    @property
+    def passed(self) -> bool:
+        """Whether every criterion holds."""
+        return all(verdict.passed for verdict in self.verdicts)
+
+    @property
+    def title(self) -> str:
+        """The mission's name, or the log's."""
+        return self.site.mission_path.stem if self.site is not None else self.path.stem
+
+    def take(self, sample: Sample, scorer: Scorer | None) -> None:
+        """Stores a message. Raises Malformed."""
+        self.traffic.heard(sample)
+        self.end = max(self.end, sample.stamp_ns / NS)
+        _, owner, *rest = sample.key.split("/", 2)
+        if not rest or topic_of(sample.key) is None or not re.fullmatch(VEHICLE, owner):
+            return
+        if owner != SYSTEM:
+            self.vehicles.setdefault(owner, History(owner)).heard(rest[0], sample)
+            if rest[0] in _TOLD or rest[0].startswith("state/events/"):
+                self.told.heard(sample)
+        elif sample.key == topics.TASKS.at(SYSTEM):
+            self.tasks = list(decode_sample(sample, Tasks).tasks)
+            for i, task in enumerate(self.tasks):
+                if task.state == TaskStatus.RUNNING:
+                    self.begun.setdefault(i, task.since)
+        if rest[0].startswith("state/events/"):
+            event = ReportedEvent(sample.stamp_ns / NS, "system" if owner == SYSTEM else owner, decode_sample(sample, Event))
+            self.events.append(event)
+        if scorer is not None:
+            scorer.heard(sample)
+
+
+_TOLD = (topics.NAV_STATUS.at("").removeprefix("uvf//"), topics.STATUS.at("").removeprefix("uvf//"))
+
+
+@contextlib.contextmanager
+def recorded_run(path: Path) -> Iterator[RecordedRun]:
+    """A run, read from the log or the folder of its logs; its mission's files exist as long as the context. Raises BadInput."""
+    log = logs_of(path)[0]
+    with contextlib.ExitStack() as stack:
+        run = RecordedRun(path, None)
+        try:
+            run.site = stack.enter_context(logged_site(log))
+        except BadInput as error:
+            run.note = str(error)
+        scorer = Scorer(run.site) if run.site is not None else None
+        for sample in run_samples(path):
+            # What is broken or of another type was refused by every service, too.
+            with contextlib.suppress(Malformed):
+                run.take(sample, scorer)
+        with contextlib.suppress(BadInput):  # of a log that was cut off
+            run.metadata = log_metadata(log)
+        run.vehicles = dict(sorted(run.vehicles.items()))
+        run.verdicts = scorer.judge() if scorer is not None else []
+        yield run

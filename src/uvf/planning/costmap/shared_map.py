@@ -1,0 +1,71 @@
+"""A map that another vehicle has made, laid below a vehicle's own one."""
+
+from math import ceil, floor
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.se2 import Pose2, inverse, transform
+from uvf.planning.costmap.costmap import Frame
+
+Cells = NDArray[np.int8]
+
+UNKNOWN, OCCUPIED = -1, 65
+"""Values of a map: nothing is known; per cent, from which on a cell is an obstacle."""
+
+
+class SharedMap:
+    """Cells (rows, columns) of -1 unknown, 0..100 per cent, of side ``resolution`` [m], whose first corner lies at ``map_from_cells``.
+
+    outranks: whether its obstacles count where the vehicle's own map shows free ground, too: a lidar looks over a ditch.
+    """
+
+    def __init__(self, cells: Cells, resolution: float, map_from_cells: Pose2, *, outranks: bool) -> None:
+        self._cells, self._resolution, self._map_from_cells, self._outranks = cells, resolution, map_from_cells, outranks
+        self._drawn: tuple[Cells, Frame] | None = None
+
+    def below(self, cells: Cells, frame: Frame) -> tuple[Cells, Frame]:
+        """The vehicle's own map, its resolution and origin [m], with this one where it shows nothing; as large as both together."""
+        resolution, own_corner = frame
+        if self._drawn is None or self._drawn[1][0] != resolution:
+            self._drawn = self._as_cells_of(frame)
+        drawn, (_, corner) = self._drawn
+        column, row = (round((own - low) / resolution) for own, low in zip(own_corner, corner, strict=True))
+        left, bottom = min(column, 0), min(row, 0)
+        right, top = max(column + cells.shape[1], drawn.shape[1]), max(row + cells.shape[0], drawn.shape[0])
+        both = np.full((top - bottom, right - left), UNKNOWN, dtype=np.int8)
+        both[-bottom : drawn.shape[0] - bottom, -left : drawn.shape[1] - left] = drawn
+        own = both[row - bottom : row - bottom + cells.shape[0], column - left : column - left + cells.shape[1]]
+        wins = cells != UNKNOWN
+        if self._outranks:
+            wins &= own < OCCUPIED
+        own[wins] = cells[wins]
+        x, y = own_corner[0] + (left - column) * resolution, own_corner[1] + (bottom - row) * resolution
+        return both, (resolution, (x, y))
+
+    def cells_with(self, shape: tuple[int, int], frame: Frame) -> float:
+        """How many cells the two maps have together; shape (rows, columns) and frame of the vehicle's own one."""
+        resolution, corner = frame[0], np.array(frame[1])
+        rim = self._rim()
+        low, high = np.minimum(rim.min(axis=0), corner), np.maximum(rim.max(axis=0), corner + resolution * np.array(shape[::-1]))
+        return float(np.prod((high - low) / resolution))
+
+    def _rim(self) -> NDArray[np.float64]:
+        """Corners (4, 2) [m] of this map in the vehicle's own map frame."""
+        rows, columns = self._cells.shape
+        return transform(self._map_from_cells, np.array(((0, 0), (columns, 0), (0, rows), (columns, rows))) * self._resolution)
+
+    def _as_cells_of(self, frame: Frame) -> tuple[Cells, Frame]:
+        """This map in cells of the vehicle's own one, by the value at their centres."""
+        resolution, (x, y) = frame
+        rows, columns = self._cells.shape
+        corners = self._rim()
+        low = [floor((at - own) / resolution + 1e-6) for at, own in zip(corners.min(axis=0), (x, y), strict=True)]
+        high = [ceil((at - own) / resolution - 1e-6) for at, own in zip(corners.max(axis=0), (x, y), strict=True)]
+        across, up = np.meshgrid(np.arange(low[0], high[0]) + 0.5, np.arange(low[1], high[1]) + 0.5)
+        centres = np.column_stack((across.ravel(), up.ravel())) * resolution + (x, y)
+        at = np.floor(transform(inverse(self._map_from_cells), centres) / self._resolution).astype(np.int64)
+        inside = ((at >= 0) & (at < (columns, rows))).all(axis=1)
+        drawn = np.full(across.size, UNKNOWN, dtype=np.int8)
+        drawn[inside] = self._cells[at[inside, 1], at[inside, 0]]
+        return drawn.reshape(across.shape), (resolution, (x + low[0] * resolution, y + low[1] * resolution))

@@ -1,0 +1,49 @@
+"""The messages of a whole run, whatever became of its files."""
+
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from schemas.topics import PREFIX
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.bus.interface import Sample, matches
+from uvf.runtime.log.folder import logs_of
+from uvf.runtime.log.reading import log_keys, log_metadata, read_log
+from uvf.runtime.log.recovery import recover
+
+EVERYTHING = (f"{PREFIX}/**",)
+
+
+def run_samples(run: Path, expressions: Sequence[str] = EVERYTHING) -> Iterator[Sample]:
+    """The messages whose keys match, of the log or of all files of the run's folder, in order of time. Raises BadInput.
+
+    A file that was cut off is read as far as it is whole; what a later file repeats at its head from the one before it comes once.
+    """
+    last: dict[str, tuple[int, int]] = {}
+    for log in logs_of(run):
+        for sample in _samples(log, expressions):
+            number = sample.stamp_ns, sample.seq
+            if last.get(sample.key) != number:
+                yield sample
+            last[sample.key] = number
+
+
+def _samples(log: Path, expressions: Sequence[str]) -> Iterator[Sample]:
+    try:
+        log_metadata(log)
+    except BadInput as error:
+        if "cut off" not in str(error):
+            raise
+        with tempfile.TemporaryDirectory() as folder:
+            whole = Path(folder) / "log.mcap"
+            recover(log, whole)
+            yield from read_log(whole, _keys(whole, expressions))
+        return
+    yield from read_log(log, _keys(log, expressions))
+
+
+def _keys(log: Path, expressions: Sequence[str]) -> list[str] | None:
+    """None for all of them."""
+    if expressions == EVERYTHING:
+        return None
+    return [key for key in log_keys(log) if any(matches(expression, key) for expression in expressions)]

@@ -1,0 +1,79 @@
+"""A map that another vehicle has made leads beyond the own one, and a broken one does no harm."""
+
+import numpy as np
+import pytest
+
+from schemas.messages import Grid
+from tests.services.planner.planner_bench import START, Bench, asked
+from uvf.runtime.messages.convert import occupancy_grid, planar_pose
+from uvf.runtime.messages.height_grids import heights_message
+
+SIDE = 0.25
+BEYOND = (7.0, 1.0)
+"""m, map: the own map ends at 4 m."""
+
+
+def corridor(wall=None):
+    """World heights of a strip from 2 m before the map to 10 m behind it, level but for a ``wall`` across it at 5 m (map x) [m high]."""
+    ground = np.zeros((round(12.0 / SIDE), round(3.0 / SIDE)), dtype=np.float32)
+    top = ground.copy()
+    if wall is not None:
+        top[round(7.0 / SIDE), : round(2.5 / SIDE)] = wall
+    return heights_message(top, ground, SIDE, (START[0] - 3.0, START[1] - 2.0), 0.0)
+
+
+def open_room():
+    """The own map: free as far as 3 m, nothing known from there on."""
+    cells = np.zeros((60, 80), dtype=np.int8)
+    cells[:, 60:] = -1
+    return occupancy_grid(cells, 0.05, 0.0, 0.0, "v/map", 0.0)
+
+
+def bench():
+    made = Bench()
+    made.grid = open_room()
+    return made
+
+
+def test_without_it_a_goal_beyond_the_own_map_is_refused_and_with_it_driven_to():
+    assert not bench().step(goal=[asked(*BEYOND)]).said["goal"][0].accepted
+    led = bench().step(shared=corridor()).step(goal=[asked(*BEYOND)], shared=corridor())
+    assert led.said["goal"][0].accepted
+    led.step(2, shared=corridor())
+    assert led.path[-1] == pytest.approx(BEYOND, abs=0.1) and abs(led.path[:, 1] - 1.0).max() < 0.2
+
+
+@pytest.mark.parametrize("wall", [0.6, 2.0])
+def test_what_stands_on_the_shared_ground_is_driven_round(wall):
+    shared = corridor(wall)
+    led = bench().step(2, shared=shared).step(goal=[asked(*BEYOND)], shared=shared).step(2, shared=shared)
+    across = led.path[np.abs(led.path[:, 0] - 5.0) < 0.1]
+    assert len(across) and (across[:, 1] > 0.5 + 0.1).all() != (across[:, 1] < 2.5).all()
+
+
+def test_a_low_step_is_driven_over():
+    shared = corridor(0.1)
+    led = bench().step(2, shared=shared).step(goal=[asked(*BEYOND)], shared=shared).step(2, shared=shared)
+    assert abs(led.path[:, 1] - 1.0).max() < 0.2
+
+
+def test_a_grid_of_another_ground_vehicle_serves_as_well():
+    cells = np.zeros((240, 60), dtype=np.int8)
+    shared = occupancy_grid(cells, 0.05, START[0] - 3.0, START[1] - 2.0, "world", 0.0)
+    assert bench().step(shared=shared).step(goal=[asked(*BEYOND)], shared=shared).said["goal"][0].accepted
+
+
+@pytest.mark.parametrize("broken", ["rows", "squares", "nothing", "far away"])
+def test_a_broken_map_is_left_out_and_told_once(broken):
+    shared = corridor()
+    if broken == "rows":
+        shared.data = shared.data[:-3]
+    elif broken == "squares":
+        shared.cell_size.y = 0.5
+    elif broken == "nothing":
+        shared = Grid()
+    else:
+        shared.pose.CopyFrom(planar_pose(9e5, -9e5, 0.0))
+    made = bench().step(3, shared=shared)
+    assert made.events.count("the map of another vehicle is left out") == 1
+    assert made.step(goal=[asked(2.0, 1.0)], shared=shared).said["goal"][0].accepted
