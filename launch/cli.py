@@ -52,6 +52,12 @@ def known_run(path: Path | None) -> Path | None:
         return path and settings.log_path(path, "run")
 
 
+def known_runs(paths: list[Path]) -> list[Path]:
+    """As ``known_run``, of several."""
+    with bad_input_is_one_line():
+        return [settings.log_path(path, "run") for path in paths]
+
+
 def known_benchmarks(names: list[str]) -> list[str]:
     """Checks the first name, a benchmark group; those that follow may be cases, which only the group knows."""
     with bad_input_is_one_line():
@@ -203,6 +209,31 @@ def report(
 
     with bad_input_is_one_line():
         report_run(run or settings.runs_folder() / "latest", out)
+
+
+@app.command()
+def compare(
+    runs: Annotated[list[Path], typer.Argument(help="Two runs or more: folders or logs.", callback=known_runs)],
+    out: Annotated[Path | None, typer.Option(help="Folder to write into; by default compare/ beside the first run's logs.")] = None,
+) -> None:
+    """Compare runs side by side: criteria, figures, ways and curves of each vehicle, and what differed in their missions."""
+    from launch.commands.report import compare_runs
+
+    with bad_input_is_one_line():
+        compare_runs(runs, out)
+
+
+@app.command()
+def plot(
+    run: Annotated[Path, typer.Argument(help=RUN, callback=known_run)],
+    fields: Annotated[list[str], typer.Argument(help="KEY.FIELD, as burger/nav/pose.pose.position.x; * stands for any vehicle.")],
+    out: Annotated[Path | None, typer.Option(help="Picture to write (.png, .svg, .pdf); by default plot.png beside the logs.")] = None,
+) -> None:
+    """Plot fields of messages over time, a panel for each."""
+    from launch.commands.report import plot_fields
+
+    with bad_input_is_one_line():
+        plot_fields(run, fields, out)
 
 
 @app.command()

@@ -88,6 +88,20 @@ def log_page(
         make_page(log, begin, end, out)
 
 
+@log_app.command("export")
+def log_export(
+    log: RunArgument,
+    keys: Annotated[list[str] | None, typer.Argument(help="Topics, as burger/nav/pose or */truth/state; all, where none is given.")] = None,
+    parquet: Annotated[bool, typer.Option("--parquet/--csv", help="Which kind of files.")] = False,
+    out: Annotated[Path | None, typer.Option(help="Folder to write into; by default csv/ or parquet/ beside the log.")] = None,
+) -> None:
+    """Save the messages as tables for pandas, MATLAB or a spreadsheet: a file a topic, a column a field."""
+    from launch.commands.log_export import export_log
+
+    with bad_input_is_one_line():
+        export_log(log, keys or [], "parquet" if parquet else "csv", out)
+
+
 @log_app.command("recover")
 def log_recover(log: LogArgument, out: Annotated[Path | None, typer.Option(help="By default <log>-recovered.mcap.")] = None) -> None:
     """Save what can be saved of a log that was cut off."""

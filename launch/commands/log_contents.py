@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
-from launch.commands.live.topic import full_key, sample_text
+from launch.commands.live.topic import sample_text
 from launch.scoring.last_words import event_text
 from schemas import topics
 from schemas.messages import Event
@@ -15,6 +15,7 @@ from uvf.runtime.bus.wire import Malformed, decode_sample
 from uvf.runtime.log.folder import logs_of
 from uvf.runtime.log.reading import log_keys
 from uvf.runtime.log.run_samples import run_samples
+from uvf.runtime.messages.topic_lookup import full_key
 from uvf.runtime.messages.validation import escaped
 
 EVENTS = (topics.EVENTS.by("*").at("*"), topics.SYSTEM_EVENTS.by("*").at(SYSTEM))

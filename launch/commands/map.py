@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from launch.refusal import bad_input_is_one_line
-from launch.settings import runs_folder
+from launch.settings import log_path, runs_folder
 
 map_app = typer.Typer(no_args_is_help=True, help="Maps: save, load, merge, compare.")
 
@@ -21,15 +21,24 @@ def map_save(
     mode: Annotated[str, typer.Option(help="trinary, scale (keeps each cell's value, PNG) or raw (the same, PGM).")] = "trinary",
     own_frame: Annotated[bool, typer.Option("--own-frame", help="Origin in the vehicle's map frame instead of the world's.")] = False,
     session: Annotated[bool, typer.Option("--session", help="Also NAME.npz: to merge, to be localized on, to go on with.")] = False,
+    run: Annotated[Path | None, typer.Option(help="Of a past run instead: its folder or log, as runs/latest.")] = None,
+    layer: Annotated[str, typer.Option(help="Of a past run: grid, the vehicle's own map, or team, the merged one.")] = "grid",
 ) -> None:
-    """Write the map of a running vehicle as picture and yaml, as map_saver does."""
+    """Write the map of a running vehicle, or the last one of a past run, as picture and yaml, as map_saver does."""
+    from launch.maps.recorded import recorded_map
     from launch.maps.running import doubt, drawn_map, running_session
     from uvf.models.world.map_file import check_mode, save_map
+    from uvf.models.yaml_data import BadInput
     from uvf.runtime.state.saved_maps import map_path
 
     with bad_input_is_one_line():
         check_mode(map_path(name), mode)
-        owner, grid = drawn_map(vehicle, own_frame)
+        if run is not None:
+            if session:
+                raise BadInput("--session: a log holds no session; leave it out, or save while the mission runs")
+            owner, grid = recorded_map(log_path(run, "run"), vehicle, layer, own_frame)
+        else:
+            owner, grid = drawn_map(vehicle, own_frame)
         yaml = save_map(grid, map_path(name), mode)
         typer.echo(f"uvf: map of {owner}: {yaml}")
         if warning := doubt(grid, mode):

@@ -13,6 +13,7 @@ from schemas.messages import (
     Contact,
     DriveCommand,
     Event,
+    FrameTransform,
     Grid,
     Kind,
     Mission,
@@ -139,6 +140,7 @@ class History:
     drives: Series = field(default_factory=lambda: Series(2))
     navigation: list[tuple[float, NavStatus]] = field(default_factory=list)  # at each change of job, goal, state or reason
     maps: dict[str, bytes] = field(default_factory=dict)  # the last message of each of MAPS
+    placing: FrameTransform | None = None  # world from the vehicle's map
     params: dict[str, ParamValues] = field(default_factory=dict)  # of each service, the last ones
 
     def heard(self, name: str, sample: Sample) -> None:
@@ -157,6 +159,8 @@ class History:
         elif name in MAPS:
             decode_sample(sample, Grid)
             self.maps[name] = sample.payload
+        elif name == "tf/world":
+            self.placing = decode_sample(sample, FrameTransform)
         elif name.startswith("state/params/"):
             self.params[name.removeprefix("state/params/")] = decode_sample(sample, ParamValues)
         elif name.startswith("state/events/"):

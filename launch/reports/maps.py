@@ -2,13 +2,15 @@
 
 from dataclasses import dataclass
 
+from launch.reports.history import History
 from launch.reports.recorded_run import RecordedRun
-from launch.scoring.map_measures import placed_in_world
 from schemas.messages import Grid
-from uvf.maths.se2 import Pose2
-from uvf.models.world.geometry import floor_plan
+from services.slam.map_server import in_world
+from uvf.maths.se2 import IDENTITY
+from uvf.models.world.geometry import FloorPlan, floor_plan
 from uvf.models.world.map_file import GridMap
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.grids import as_map
 from uvf.slam.maps.quality import MapScore, score
 
 PLAN_CELL = 0.02  # m
@@ -17,36 +19,38 @@ LARGEST = 40_000_000  # cells of a floor plan
 
 @dataclass(frozen=True)
 class ReportedMap:
-    """A map at the end of a run; score: None where the world is too large to be held against it."""
+    """A map at the end of a run; score: None where the world is not known, or too large."""
 
     name: str
     grid: GridMap
     score: MapScore | None
 
 
-def own_map(run: RecordedRun, name: str, topic: str = "map/grid") -> GridMap | None:
+def own_map(history: History, topic: str = "map/grid") -> GridMap | None:
     """The last map of a vehicle on a topic, in the world frame; None where it has none, or nobody knows where it lies."""
-    payload = run.vehicles[name].maps.get(topic)
-    if payload is None or run.site is None or name not in run.site.members:
+    payload = history.maps.get(topic)
+    if payload is None or history.placing is None:
         return None
     try:
-        grid = placed_in_world(Grid.FromString(payload), name, run.site)
+        return in_world(as_map(Grid.FromString(payload)), history.placing)
     except BadInput:
         return None
-    return grid if grid.cells.size else None
 
 
 def reported_maps(run: RecordedRun) -> list[ReportedMap]:
     """Each vehicle's own map, and those of teams."""
-    found = [(name, own_map(run, name)) for name in run.vehicles]
-    found += [(f"team of {name}", own_map(run, name, "map/team")) for name in run.vehicles]
+    found = [(name, own_map(history)) for name, history in run.vehicles.items()]
+    found += [(f"team of {name}", own_map(history, "map/team")) for name, history in run.vehicles.items()]
+    drawn = [(name, grid) for name, grid in found if grid is not None]
+    plan = _plan(run) if drawn else None
+    return [ReportedMap(name, grid, None if plan is None else score(grid, plan, IDENTITY)) for name, grid in drawn]
+
+
+def _plan(run: RecordedRun) -> FloorPlan | None:
     if run.site is None:
-        return []
+        return None
     x_min, y_min, x_max, y_max = run.site.world.floor
-    fits = (x_max - x_min) * (y_max - y_min) / PLAN_CELL**2 <= LARGEST
-    plan = floor_plan(run.site.world, PLAN_CELL) if fits and any(grid is not None for _, grid in found) else None
-    here = Pose2(0.0, 0.0, 0.0)
-    return [ReportedMap(name, grid, None if plan is None else score(grid, plan, here)) for name, grid in found if grid is not None]
+    return floor_plan(run.site.world, PLAN_CELL) if (x_max - x_min) * (y_max - y_min) / PLAN_CELL**2 <= LARGEST else None
 
 
 def team_map(maps: list[ReportedMap]) -> GridMap | None:

@@ -17,14 +17,9 @@ from schemas.messages import Event, NavStatus, TaskStatus
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.enum_names import enum_name
 
-FOLDER, PAGE, TEAM = "report", "report.html", "ways.png"
+PAGE, TEAM = "report.html", "ways.png"
 MOST_EVENTS = 500
 SEVERE = Event.NOTICE
-
-
-def folder_beside(run: Path) -> Path:
-    """The folder of a run's report, beside its logs."""
-    return (run if run.is_dir() else run.parent) / FOLDER
 
 
 def vehicle_figures(history: History) -> list[Figure]:
@@ -44,7 +39,7 @@ def write_report(run: RecordedRun, target: Path) -> list[Path]:
             if history.is_aircraft:
                 draw(history, pictures[name])
             else:
-                draw_drive(history, own_map(run, name), pictures[name])
+                draw_drive(history, own_map(history), pictures[name])
         draw_team(run, team_map(maps), target / TEAM)
         page = target / PAGE
         page.write_text(html.document(f"Report: {run.title}", list(_sections(run, maps, target)), _head(run)), encoding="utf-8")

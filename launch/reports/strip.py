@@ -11,6 +11,8 @@ from uvf.runtime.messages.convert import mode_name
 BANDS = ("#f3f3f7", "#e2ebf6")  # behind one mode and the next
 MOST_NAMED = 12  # events written out
 LINES = 3  # of them below each other
+LAST = 0.15
+"""Of the time, in which they are written before their marks, so that they stay on the page."""
 
 
 def draw_modes(axes: Any, history: History) -> None:
@@ -29,8 +31,9 @@ def draw_modes(axes: Any, history: History) -> None:
         last = t
         axes.plot([t, t], [0, 1], color=_colour(event), lw=1.0)
         if row < LINES:
-            place = t, 0.85 - 0.22 * row
-            axes.annotate(event.text, place, xytext=(3, 0), textcoords="offset points", fontsize=7, va="center", color=_colour(event))
+            ha, aside = ("left", 3) if t < end - LAST * (end - begin) else ("right", -3)
+            look = {"fontsize": 7, "ha": ha, "va": "center", "color": _colour(event)}
+            axes.annotate(event.text, (t, 0.85 - 0.22 * row), xytext=(aside, 0), textcoords="offset points", **look)
     axes.set_yticks([])
     axes.tick_params(labelsize=8)
     axes.set_title("modes and events", fontsize=10, loc="left")

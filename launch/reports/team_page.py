@@ -43,10 +43,15 @@ def draw_team(run: RecordedRun, team_map: GridMap | None, target: Path) -> None:
     sheet.savefig(target, dpi=90)
 
 
-def _over_world(axes: Any, run: RecordedRun, _: GridMap | None) -> None:
+def draw_world(axes: Any, run: RecordedRun) -> None:
+    """Draws the world of a run from above, if its mission is known."""
     if run.site is not None:
         world = run.site.world
         draw_plan(axes, world, floor_plan(world, _cell(world)), None)
+
+
+def _over_world(axes: Any, run: RecordedRun, _: GridMap | None) -> None:
+    draw_world(axes, run)
     _ways(axes, run)
     finish(axes, "ways over the world" if run.site is not None else "ways", 4)
 
@@ -54,7 +59,7 @@ def _over_world(axes: Any, run: RecordedRun, _: GridMap | None) -> None:
 def _over_floor(axes: Any, run: RecordedRun, team_map: GridMap | None) -> None:
     """Where the rovers are, without the wide turns of the aircraft."""
     _over_world(axes, run, team_map)
-    rovers = np.concatenate([_way(history) for history in run.vehicles.values() if not history.is_aircraft])
+    rovers = np.concatenate([way_of(history) for history in run.vehicles.values() if not history.is_aircraft])
     if run.site is not None:
         rovers = np.concatenate((rovers, np.reshape(run.site.world.floor, (2, 2))))
     _frame(axes, rovers)
@@ -65,6 +70,7 @@ def _over_map(axes: Any, run: RecordedRun, team_map: GridMap | None) -> None:
     assert team_map is not None
     draw_map(axes, team_map)
     _ways(axes, run)
+    _frame(axes, np.concatenate([way_of(history) for history in run.vehicles.values() if not history.is_aircraft]))
     finish(axes, "ways over the team's map", 4)
 
 
@@ -76,7 +82,7 @@ def _cell(world: WorldFile) -> float:
 def _ways(axes: Any, run: RecordedRun) -> None:
     """Ways with start (o) and end (square), true where the truth is known."""
     colours = colormaps["tab10"].colors  # type: ignore[attr-defined]
-    ways = [(name, _way(history)) for name, history in run.vehicles.items()]
+    ways = [(name, way_of(history)) for name, history in run.vehicles.items()]
     for i, (name, way) in enumerate(ways):
         if len(way):
             step, colour = max(len(way) // MOST_POINTS, 1), colours[i % len(colours)]
@@ -100,8 +106,8 @@ def _frame(axes: Any, points: Floats) -> None:
     axes.set_ylim(low[1] - margin, high[1] + margin)
 
 
-def _way(history: History) -> Floats:
-    """(k, 2) m, world."""
+def way_of(history: History) -> Floats:
+    """Where a vehicle was, (k, 2) [m, world]: truly, where the truth is known, else as it was estimated."""
     for stream in ("truth/state", "nav/state", "nav/pose"):
         if len(rows := history.rows(stream)):
             return rows[:, 1:3]

@@ -7,11 +7,10 @@ from launch.scoring.finding import Finding
 from launch.scoring.recorded_track import RecordedTrack
 from schemas.messages import Grid
 from uvf.maths.raycast import Rays, cast
-from uvf.maths.se2 import Pose2, compose
+from uvf.maths.se2 import Pose2
 from uvf.models.scenario import Scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.world.geometry import floor_plan, solids
-from uvf.models.world.map_file import GridMap
 from uvf.runtime.messages.grids import as_map
 from uvf.runtime.messages.height_grids import heights_of
 from uvf.runtime.messages.mapped_floor import MappedFloor
@@ -44,7 +43,7 @@ def map_f1(track: RecordedTrack) -> Finding:
     """
     if track.grid is None:
         return Finding(0.0, note="there is no map")
-    tight, loose = score_in_world(track.grid, track.name, track.site).walls.detections
+    tight, loose = _score(track.grid, track).walls.detections
     return Finding(loose.f1, note=f"{tight.f1:.2f} within 0.05 m")
 
 
@@ -72,18 +71,9 @@ def height_error(track: RecordedTrack) -> Finding:
     return Finding(float(np.sqrt(np.mean(errors**2))), note=f"median {np.median(np.abs(errors)):.2f} m of {len(errors)} columns")
 
 
-def score_in_world(message: Grid, name: str, site: Scenario) -> MapScore:
-    """Scores of a map against the world of a mission. Raises BadInput for a message that is no map."""
-    return score(placed_in_world(message, name, site), floor_plan(site.world, PLAN_CELL), Pose2(0.0, 0.0, 0.0))
-
-
-def placed_in_world(message: Grid, name: str, site: Scenario) -> GridMap:
-    """A vehicle's map in the world frame: its own one lies at the mission's start. Raises BadInput for a message that is no map."""
-    grid = as_map(message)
-    if message.frame_id == "world":
-        return grid
-    start = site.members[name].entry.start
-    return GridMap(grid.cells, grid.resolution, compose(Pose2(start.x, start.y, start.yaw), grid.origin))
+def _score(message: Grid, track: RecordedTrack) -> MapScore:
+    grid, start = as_map(message), track.site.members[track.name].entry.start
+    return score(grid, floor_plan(track.site.world, PLAN_CELL), Pose2(start.x, start.y, start.yaw))
 
 
 def _surface(site: Scenario, centres: Floats, side: float) -> tuple[Floats, NDArray[np.bool_]]:

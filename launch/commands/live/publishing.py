@@ -8,10 +8,11 @@ from typing import Any
 import typer
 from google.protobuf.json_format import ParseDict, ParseError
 
-from launch.commands.live.topic import full_key, known_topic
+from launch.commands.live.topic import known_topic
 from schemas.topics import PREFIX, Topic
 from uvf.client import Client
 from uvf.models.yaml_data import BadInput, nearest, parse_yaml
+from uvf.runtime.messages.topic_lookup import full_key
 
 
 def message_of(key: str, fields: str) -> tuple[str, Topic[Any], Any]:

@@ -9,12 +9,12 @@ import typer
 from google.protobuf.message import DecodeError
 from google.protobuf.text_format import MessageToString
 
-from schemas.topics import PREFIX, REQUESTS, TOPICS, Topic
+from schemas.topics import REQUESTS, TOPICS, Topic
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.interface import Sample, matches
 from uvf.runtime.bus.zenoh_bus import ZenohBus
-from uvf.runtime.messages.topic_lookup import topic_of
+from uvf.runtime.messages.topic_lookup import full_key, topic_of
 
 LOOK = 0.02  # s
 LIVE_SECONDS = 2.0
@@ -30,11 +30,6 @@ def list_table() -> None:
     for request in REQUESTS.values():
         types = f"{request.message.DESCRIPTOR.name} -> {request.reply.DESCRIPTOR.name}"
         typer.echo(f"{request.key:{width}}  {types:26}  {'request':19}  {request.about}")
-
-
-def full_key(key: str) -> str:
-    """The key as it is on the bus, with the prefix that people leave out."""
-    return key if key.startswith(f"{PREFIX}/") else f"{PREFIX}/{key}"
 
 
 def known_topic(key: str) -> Topic[Any]:

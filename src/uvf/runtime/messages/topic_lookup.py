@@ -6,7 +6,7 @@ from typing import Any
 
 from google.protobuf.message import Message
 
-from schemas.topics import REQUESTS, TOPICS, Topic
+from schemas.topics import PREFIX, REQUESTS, TOPICS, Topic
 
 KEY_MOST = 512
 """Characters of a key that any part of the system has to deal with; those of the table stay far below."""
@@ -41,6 +41,11 @@ def _find(tree: Tree, parts: Sequence[str]) -> Any:
 
 
 _TOPICS, _REQUESTS = _tree(TOPICS), _tree(REQUESTS)
+
+
+def full_key(key: str) -> str:
+    """The key as it is on the bus, with the prefix that people leave out."""
+    return key if key.startswith(f"{PREFIX}/") else f"{PREFIX}/{key}"
 
 
 def topic_of(key: str) -> Topic[Message] | None:

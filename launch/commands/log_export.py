@@ -1,0 +1,92 @@
+"""``uvf log export``: the messages of a run as tables, one file a topic."""
+
+import json
+from collections.abc import Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, Literal
+
+import pyarrow as pa
+import pyarrow.csv
+import pyarrow.parquet
+import typer
+from google.protobuf.message import DecodeError
+
+from uvf.models.yaml_data import BadInput, nearest
+from uvf.runtime.bus.interface import matches
+from uvf.runtime.log.folder import logs_of
+from uvf.runtime.log.reading import log_keys
+from uvf.runtime.log.run_samples import run_samples
+from uvf.runtime.messages.fields import Getter, columns_of
+from uvf.runtime.messages.step_times import NS
+from uvf.runtime.messages.topic_lookup import full_key, topic_of
+
+Kind = Literal["csv", "parquet"]
+BATCH = 2000  # rows that are written at once
+TYPES: dict[type, Any] = {float: pa.float64(), int: pa.int64(), bool: pa.bool_(), str: pa.string(), list: pa.list_(pa.float64())}
+
+
+class TopicTable:
+    """A file of one topic: column ``t`` [s, simulation], then one for each field of the message."""
+
+    def __init__(self, key: str, target: Path, kind: Kind) -> None:
+        """Raises OSError."""
+        topic = topic_of(key)
+        assert topic is not None
+        self._message = topic.message
+        self._columns = columns_of(topic.message.DESCRIPTOR)
+        if kind == "csv":  # has no lists
+            self._columns |= {name: (str, _json_of(get)) for name, (type_, get) in self._columns.items() if type_ is list}
+        self._schema = pa.schema([("t", pa.float64()), *((name, TYPES[type_]) for name, (type_, _) in self._columns.items())])
+        self._rows: list[list[Any]] = [[] for _ in self._schema.names]
+        self._writer = (pa.csv.CSVWriter if kind == "csv" else pa.parquet.ParquetWriter)(target, self._schema)
+        self.count = 0
+
+    def add(self, stamp_ns: int, payload: bytes) -> None:
+        """Adds a message; one that is broken was refused by every service, too, and is left out."""
+        try:
+            message = self._message.FromString(payload)
+        except DecodeError:
+            return
+        for column, value in zip(self._rows, (stamp_ns / NS, *(get(message) for _, get in self._columns.values())), strict=True):
+            column.append(value)
+        self.count += 1
+        if len(self._rows[0]) >= BATCH:
+            self._flush()
+
+    def _flush(self) -> None:
+        self._writer.write_batch(pa.record_batch(self._rows, schema=self._schema))
+        self._rows = [[] for _ in self._schema.names]
+
+    def close(self) -> None:
+        """Writes what is left."""
+        if self._rows[0]:
+            self._flush()
+        self._writer.close()
+
+
+def _json_of(get: Getter) -> Getter:
+    return lambda message: json.dumps(get(message))
+
+
+def export_log(run: Path, keys: Sequence[str], kind: Kind, out: Path | None) -> None:
+    """Writes the topics that match ``keys`` (all, where none is given) into the folder ``out``, or beside the log. Raises BadInput."""
+    known = sorted({name for log in logs_of(run) for name in log_keys(log) if topic_of(name) is not None})
+    chosen = known
+    if keys:
+        for key in keys:
+            if not any(matches(full_key(key), name) for name in known):
+                raise BadInput(f"{run}: no messages of '{key}'; {nearest(key, (name.partition('/')[2] for name in known))}")
+        chosen = [name for name in known if any(matches(full_key(key), name) for key in keys)]
+    folder = out or (run if run.is_dir() else run.parent) / kind
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with ExitStack() as stack:
+            tables = {key: TopicTable(key, folder / f"{key.partition('/')[2].replace('/', '.')}.{kind}", kind) for key in chosen}
+            for table in tables.values():
+                stack.callback(table.close)
+            for sample in run_samples(run, chosen):
+                tables[sample.key].add(sample.stamp_ns, sample.payload)
+    except OSError as error:
+        raise BadInput(f"{folder}: {error.strerror or error}: choose another folder with --out") from error
+    typer.echo(f"{sum(table.count for table in tables.values())} messages of {len(tables)} topics saved into {folder}")
