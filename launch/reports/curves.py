@@ -20,6 +20,7 @@ from uvf.runtime.messages.step_times import NS
 from uvf.runtime.messages.topic_lookup import full_key, topic_of
 
 Floats = NDArray[np.float64]
+KINDS = ("png", "svg", "pdf")
 Curves = dict[str, tuple[Floats, Floats]]
 """By key: times (k,) [s, simulation] and values (k,)."""
 
@@ -65,6 +66,8 @@ def _columns(rows: list[tuple[float, float]]) -> tuple[Floats, Floats]:
 
 def draw_curves(run: Path, fields: Sequence[str], target: Path) -> Curves:
     """Draws a panel for each field, one below the other, over one axis of time into a PNG; returns all curves. Raises BadInput."""
+    if (kind := target.suffix.removeprefix(".").lower()) not in KINDS:
+        raise BadInput(f"--out {target}: no picture ends so; {nearest(kind, KINDS)}")
     drawn: Curves = {}
     sheet = matplotlib.figure.Figure(figsize=(13.0, 1.0 + 2.6 * len(fields)), layout="constrained")
     panels = sheet.subplots(len(fields), 1, sharex=True, squeeze=False)[:, 0]

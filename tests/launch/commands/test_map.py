@@ -7,8 +7,12 @@ from typer.testing import CliRunner
 
 from launch.cli import app
 from launch.maps.running import doubt
+from schemas import topics
 from uvf.maths.se2 import IDENTITY, Pose2
-from uvf.models.world.map_file import GridMap, save_map
+from uvf.models.world.map_file import GridMap, load_map, save_map
+from uvf.runtime.bus.interface import Sample
+from uvf.runtime.log.recording import Recorder
+from uvf.runtime.messages.convert import occupancy_grid, planar_frame
 
 ROOM = np.full((60, 80), -1, dtype=np.int8)
 ROOM[10:50, 10:70] = 0
@@ -26,6 +30,41 @@ def uvf(tmp_path, monkeypatch):
         return result.exit_code, result.output
 
     return run
+
+
+@pytest.fixture
+def past_run(tmp_path):
+    """Of two rovers that have drawn a room, the second one placed and turned in the world; the first has the team's map."""
+    with Recorder(tmp_path / "log-000.mcap") as recorder:
+        for owner, place in {"anne": Pose2(0.0, 0.0, 0.0), "bert": Pose2(1.0, -2.0, np.pi / 2)}.items():
+            said = (
+                (topics.MAP, occupancy_grid(np.full((4, 4), -1, dtype=np.int8), 0.05, 0.0, 0.0, f"{owner}/map", 1.0)),
+                (topics.MAP, occupancy_grid(ROOM, 0.05, 0.5, 0.0, f"{owner}/map", 2.0)),
+                (topics.TF_WORLD, planar_frame(0.0, "world", f"{owner}/map", place)),
+            )
+            for n, (topic, message) in enumerate(said, start=1):
+                recorder.write(Sample(topic.at(owner), message.DESCRIPTOR.full_name, message.SerializeToString(), n, n, 0))
+    return tmp_path
+
+
+def test_the_map_of_a_past_run_is_saved_where_it_lies_in_the_world(uvf, past_run, tmp_path):
+    assert uvf("save", "room", "--run", str(past_run), "--vehicle", "bert")[0] == 0
+    room = load_map(tmp_path / "state" / "maps" / "room.yaml")
+    assert room.cells.shape == ROOM.shape and room.origin == pytest.approx((1.0, -1.5, np.pi / 2), abs=1e-6)
+    assert uvf("save", "own", "--run", str(past_run), "--vehicle", "bert", "--own-frame")[0] == 0
+    assert load_map(tmp_path / "state" / "maps" / "own.yaml").origin == pytest.approx((0.5, 0.0, 0.0), abs=1e-6)
+
+
+def test_a_map_that_no_past_run_has_is_one_line(uvf, past_run):
+    for arguments, part in (
+        ((), "choose one by --vehicle: anne, bert"),
+        (("--vehicle", "ann"), "did you mean 'anne'?"),
+        (("--layer", "team"), "no map in this log of a team"),
+        (("--layer", "tem"), "did you mean 'team'?"),
+        (("--vehicle", "anne", "--session"), "a log holds no session"),
+    ):
+        code, said = uvf("save", "room", "--run", str(past_run), *arguments)
+        assert code == 2 and part in " ".join(said.split()), said
 
 
 def test_load_tells_what_is_in_a_map(uvf, tmp_path):

@@ -1,4 +1,4 @@
-"""``uvf report`` and ``uvf compare`` on runs of rovers and of teams: what is told is what was recorded, and a stranger's text stays text."""
+"""``uvf report`` and ``uvf compare`` on runs of rovers and of teams: what was recorded is told, and a stranger's text stays text."""
 
 import re
 from html.parser import HTMLParser
@@ -105,7 +105,7 @@ def written(path, samples):
 
 
 def drive(text="went well"):
-    """Northwards at 0.5 m/s for 20 s, first backwards for 4 s; believed 0.3 m too far east and turned by 0.1 rad; touches something twice."""
+    """Northwards at 0.5 m/s for 20 s, first backwards for 4 s; believed 0.3 m too far east, turned by 0.1 rad; two contacts."""
     north = Quaternion(w=np.cos(np.pi / 4), z=np.sin(np.pi / 4))
     for i in range(200):
         t = i / 10

@@ -42,7 +42,7 @@ def number_of(message: Descriptor, path: str) -> Callable[[Any], float | None]:
             return _composed([*steps, ANGLES[name]])
         field = here.fields_by_name.get(name)
         if field is None:
-            raise BadInput(f"{whole}: {here.full_name} has no field '{name}'; {nearest(name, number_names(here))}")
+            raise BadInput(f"{whole}: {here.full_name} has no field '{name}'; {nearest(name, _names(here))}")
         if is_repeated(field) != (index is not None):
             raise BadInput(f"{whole}: {name} is {'a list: choose one of it, as ' + name + '[0]' if index is None else 'no list'}")
         steps.append(_element(name, int(index)) if index is not None else _named(name))
@@ -62,7 +62,7 @@ def number_of(message: Descriptor, path: str) -> Callable[[Any], float | None]:
 def number_names(message: Descriptor) -> list[str]:
     """The dotted names of all single numbers of a message, and of the angles of its quaternions."""
     if message is Quaternion.DESCRIPTOR:
-        return [*(field.name for field in message.fields), *ANGLES]
+        return _names(message)
     found: list[str] = []
     for field in _fields(message):
         if is_repeated(field):
@@ -105,6 +105,10 @@ _TYPES: dict[int, type] = {
     FieldDescriptor.CPPTYPE_BOOL: bool,
     FieldDescriptor.CPPTYPE_STRING: str,
 }
+
+
+def _names(message: Descriptor) -> list[str]:
+    return [*(field.name for field in _fields(message)), *(ANGLES if message is Quaternion.DESCRIPTOR else ())]
 
 
 def _fields(message: Descriptor) -> list[FieldDescriptor]:
