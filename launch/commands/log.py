@@ -102,6 +102,18 @@ def log_export(
         export_log(log, keys or [], "parquet" if parquet else "csv", out)
 
 
+@log_app.command("layout")
+def log_layout(
+    log: RunArgument,
+    out: Annotated[Path | None, typer.Option(help="By default foxglove.json beside the log.")] = None,
+) -> None:
+    """Save a layout for Foxglove or Lichtblick that shows this log's maps, tracks, modes and curves."""
+    from launch.commands.log_export import save_layout
+
+    with bad_input_is_one_line():
+        save_layout(log, out)
+
+
 @log_app.command("recover")
 def log_recover(log: LogArgument, out: Annotated[Path | None, typer.Option(help="By default <log>-recovered.mcap.")] = None) -> None:
     """Save what can be saved of a log that was cut off."""

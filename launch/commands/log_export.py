@@ -1,4 +1,4 @@
-"""``uvf log export``: the messages of a run as tables, one file a topic."""
+"""``uvf log export`` and ``uvf log layout``: a run for other programs, as tables, one file a topic, and with a layout to look at it."""
 
 import json
 from collections.abc import Sequence
@@ -12,6 +12,7 @@ import pyarrow.parquet
 import typer
 from google.protobuf.message import DecodeError
 
+from launch.reports.foxglove import foxglove_layout
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.interface import matches
 from uvf.runtime.log.folder import logs_of
@@ -90,3 +91,14 @@ def export_log(run: Path, keys: Sequence[str], kind: Kind, out: Path | None) -> 
     except OSError as error:
         raise BadInput(f"{folder}: {error.strerror or error}: choose another folder with --out") from error
     typer.echo(f"{sum(table.count for table in tables.values())} messages of {len(tables)} topics saved into {folder}")
+
+
+def save_layout(run: Path, out: Path | None) -> None:
+    """Writes the layout for Foxglove to ``out``, or beside the log. Raises BadInput."""
+    keys = sorted({key for log in logs_of(run) for key in log_keys(log)})
+    target = out or (run if run.is_dir() else run.parent) / "foxglove.json"
+    try:
+        target.write_text(json.dumps(foxglove_layout(keys), indent=2), encoding="utf-8")
+    except OSError as error:
+        raise BadInput(f"{target}: {error.strerror}: choose another place with --out") from error
+    typer.echo(f"{target}: open the log in Foxglove or Lichtblick, then import this layout")

@@ -17,6 +17,7 @@ from uvf.runtime.bus.interface import Sample
 from uvf.runtime.log.recording import Recorder
 from uvf.runtime.messages.convert import planar_pose, stamp
 from uvf.runtime.messages.fields import columns_of, number_names, number_of
+from uvf.runtime.messages.topic_lookup import topic_of
 
 N = 5000
 
@@ -120,6 +121,24 @@ def test_what_cannot_be_exported_is_one_line(log, tmp_path):
     for arguments, why in (((log, "anne/nav/pse"), "did you mean 'anne/nav/pose'?"), ((log, "--out", tmp_path / "file"), "--out")):
         code, said = uvf("log", "export", *arguments)
         assert code == 2 and why in " ".join(said.split()), said
+
+
+def test_the_layout_shows_what_the_log_holds_and_nothing_else(log, tmp_path):
+    code, said = uvf("log", "layout", log, "--out", tmp_path / "layout.json")
+    assert code == 0, said
+    layout = json.loads((tmp_path / "layout.json").read_text())
+    panels = layout["configById"]
+    assert list(panels["3D!scene"]["topics"]) == ["/uvf/anne/sensor/scan", "/uvf/anne/nav/pose"]
+    for panel in panels.values():
+        for path in panel.get("paths", ()):
+            key, _, field = path["value"].removeprefix("/").partition(".")
+            number_of(topic_of(key).message.DESCRIPTOR, field)
+
+    def leaves(tree):
+        return [tree] if isinstance(tree, str) else leaves(tree["first"]) + leaves(tree["second"])
+
+    assert sorted(leaves(layout["layout"])) == sorted(panels) and "Image!camera" not in panels
+    assert uvf("log", "layout", log, "--out", tmp_path / "no" / "x")[0] == 2
 
 
 @pytest.mark.parametrize("topic", TOPICS.values(), ids=lambda topic: topic.key)
