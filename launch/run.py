@@ -49,8 +49,12 @@ def run_lockstep(
     log: Path,
     watch: Callable[[float], bool] = lambda t: True,
     warn: Callable[[str], None] = lambda line: None,
+    afterwards: float = AFTERWARDS,
 ) -> Result:
-    """Runs every sim-clock service of the mission up to ``until`` [s], or until its tasks are over, and records it. Raises BadInput."""
+    """Runs every sim-clock service of the mission up to ``until`` [s], or ``afterwards`` [s] beyond the end of its tasks, and records it.
+
+    Raises BadInput.
+    """
     scorer, told = Scorer(site), LastWords()
     hosts = catalogue.hosts(site, [k for k in catalogue.needed(site) if k.clock == "sim"])
     refuse_problems(site, hosts)
@@ -59,7 +63,7 @@ def run_lockstep(
     def goes_on(t: float) -> bool:
         nonlocal reached
         reached = t
-        return scorer.tasks.ended is None or t < scorer.tasks.ended + AFTERWARDS
+        return scorer.tasks.ended is None or t < scorer.tasks.ended + afterwards
 
     with Recorder(log, attachments(site)) as recorder:
         lockstep = Lockstep(hosts, warn=warn, contains=True)

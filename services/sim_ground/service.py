@@ -60,6 +60,10 @@ class GroundWorld(Stageable, Protocol):
         """Energy [J] that a vehicle's motors have drawn since the last call."""
         ...
 
+    def set_grip(self, vehicle: str, shares: tuple[float, float]) -> None:
+        """Leaves a vehicle's left and right wheel a share of their friction from now on, 0 to 1."""
+        ...
+
     def guide(self, guests: Mapping[str, Course]) -> None:
         """Sets how bodies of another simulator move until the next call."""
         ...
@@ -139,6 +143,8 @@ class SimGround(Service):
         """
         self._guests = courses(now.truth, self._aircraft)
         self._world.guide(self._guests)
+        for name in self._stage.rigs:
+            self._world.set_grip(name, self._faults.grip(t, name))
         self._advance(t, {name: WheelSpeeds(c.left, c.right) for name, c in now.commands.items() if not self._is_flat(name)})
         out, n, stage = self._read(t), round(t * self.hz), self._stage
         flying = [o.name for o in now.flying.objects] if now.flying else []

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from services.sim_ground.body import BodyState, Touch, base_motion
 from services.sim_ground.guest import Course
+from services.sim_ground.loaded import LoadedVehicle, Saved
 from services.sim_ground.motor import WheelMotor
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import WheelSpeeds
@@ -49,25 +50,6 @@ class BodyPlacement:
     z: float = 0.0
 
 
-@dataclass(frozen=True)
-class _Loaded:
-    """A vehicle inside the engine, whose own frame is the centre of mass: position (3,) m and orientation wxyz in base_link."""
-
-    index: int
-    wheels: tuple[int, int]
-    motors: tuple[WheelMotor, WheelMotor]
-    com_in_base: tuple[Floats, Floats]
-    up_in_com: tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class Saved:
-    """A state of the engine by its number, and the motors' references [rad/s] by vehicle."""
-
-    state: int
-    references: dict[str, list[float]]
-
-
 class BulletWorld:
     """A physics client of its own. The floor is z = 0; base_link is the point on the floor under the axle's middle."""
 
@@ -100,7 +82,7 @@ class BulletWorld:
         self._names[index] = name
         return index
 
-    def _load(self, name: str, vehicle: BodyPlacement) -> _Loaded:
+    def _load(self, name: str, vehicle: BodyPlacement) -> LoadedVehicle:
         try:
             index = pybullet.loadURDF(str(vehicle.urdf), flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=self._client)
         except pybullet.error as error:
@@ -116,7 +98,8 @@ class BulletWorld:
         self._place(index, vehicle, com_in_base)
         left, right = (WheelMotor(vehicle.body.motor, 1 / self.rate) for _ in wheels)
         x, y, z = matrix(com_in_base[1])[2]
-        return _Loaded(index, wheels, (left, right), com_in_base, (float(x), float(y), float(z)))
+        friction = max(vehicle.body.friction.mu, vehicle.body.friction.mu2)
+        return LoadedVehicle(index, wheels, (left, right), com_in_base, (float(x), float(y), float(z)), friction)
 
     def _set_friction(self, index: int, friction: Friction, wheels: Sequence[int], sliding: Sequence[int]) -> None:
         """The floor's coefficient is 1 and the engine multiplies both, so that the vehicle's alone count."""
@@ -140,6 +123,14 @@ class BulletWorld:
         orientation = multiply(world_from_base, com_in_base[1])
         pybullet.resetBasePositionAndOrientation(index, position.tolist(), _xyzw(orientation), physicsClientId=self._client)
 
+    def set_grip(self, vehicle: str, shares: tuple[float, float]) -> None:
+        """Leaves a vehicle's left and right wheel a share of their friction from now on, 0 to 1."""
+        loaded = self._vehicles[vehicle]
+        if shares != loaded.grip:
+            loaded.grip = shares
+            for wheel, share in zip(loaded.wheels, shares, strict=True):
+                pybullet.changeDynamics(loaded.index, wheel, lateralFriction=share * loaded.friction, physicsClientId=self._client)
+
     def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float, since: float = 0.0) -> None:
         """Moves the world by ``duration`` [s]; a vehicle without a finite command brakes its wheels to a stop.
 
@@ -160,7 +151,7 @@ class BulletWorld:
         """Energy [J] that a vehicle's motors have drawn since the last call."""
         return self._drawn.pop(vehicle, 0.0)
 
-    def _drive(self, vehicle: _Loaded, wanted: WheelSpeeds) -> float:
+    def _drive(self, vehicle: LoadedVehicle, wanted: WheelSpeeds) -> float:
         """J drawn in the step before."""
         (left, right), (left_motor, right_motor) = self._joint_states(vehicle), vehicle.motors
         forces = [left_motor.step(wanted[0], left[1]), right_motor.step(wanted[1], right[1])]
@@ -174,7 +165,7 @@ class BulletWorld:
         )
         return (left_motor.power(left[3], left[1]) + right_motor.power(right[3], right[1])) / self.rate
 
-    def _joint_states(self, vehicle: _Loaded) -> Any:
+    def _joint_states(self, vehicle: LoadedVehicle) -> Any:
         """Of the left and the right wheel: angle [rad], speed [rad/s], ..."""
         return pybullet.getJointStates(vehicle.index, vehicle.wheels, physicsClientId=self._client)
 
@@ -224,7 +215,7 @@ class BulletWorld:
         places = [rotate(inverse(body.world_from_body), np.array(c[5]) - body.position) for c in felt]
         return [Touch(self._names[c[2]], float(np.arctan2(p[1], p[0]))) for c, p in zip(felt, places, strict=True)]
 
-    def _has_fallen(self, loaded: _Loaded) -> bool:
+    def _has_fallen(self, loaded: LoadedVehicle) -> bool:
         _, (x, y, z, w) = pybullet.getBasePositionAndOrientation(loaded.index, physicsClientId=self._client)
         a, b, c = loaded.up_in_com
         up: float = 2 * ((x * z - w * y) * a + (y * z + w * x) * b) + (1 - 2 * (x * x + y * y)) * c
@@ -273,7 +264,7 @@ class BulletWorld:
             self._stop_wheels(self._vehicles[name])
         return ""
 
-    def _stop_wheels(self, vehicle: _Loaded) -> None:
+    def _stop_wheels(self, vehicle: LoadedVehicle) -> None:
         angles = [joint[0] for joint in self._joint_states(vehicle)]
         for wheel, motor, angle in zip(vehicle.wheels, vehicle.motors, angles, strict=True):
             motor.reference = 0.0

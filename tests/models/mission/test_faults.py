@@ -5,7 +5,7 @@ import math
 import pytest
 
 from schemas.messages import AirData, Battery, Gnss, Imu, LaserScan, SurfaceCommand, Vector3
-from uvf.models.mission.faults import Fault, check_faults
+from uvf.models.mission.faults import Fault, check_faults, check_parts
 from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.messages.faults import PARTS, Faults
@@ -73,6 +73,9 @@ def test_a_bias_is_added_in_its_unit():
         (Fault("one", "gnss", "lost", at=1.0, until=1.0), "is not after at"),
         (Fault("one", "scan", "bias", at=1.0, size=1.0), "takes no bias"),
         (Fault("one", "pitot", "bias", at=1.0), "needs a size"),
+        (Fault("one", "left_grip", "frozen", at=1.0), "may be lost, or have a bias from -1 to 0"),
+        (Fault("one", "left_grip", "bias", at=1.0, size=-1.5), "may be lost, or have a bias from -1 to 0"),
+        (Fault("one", "right_grip", "bias", at=1.0), "needs a size"),
     ],
 )
 def test_a_list_that_makes_no_sense_is_refused(fault, why):
@@ -82,3 +85,18 @@ def test_a_list_that_makes_no_sense_is_refused(fault, why):
 
 def test_for_good_means_for_good():
     assert Fault("one", "gnss", "lost", at=1.0).holds(math.inf)
+
+
+def test_a_wheel_has_the_grip_that_its_faults_leave_it():
+    faults = Faults([Fault("one", "left_grip", "bias", at=2.0, until=4.0, size=-0.75), Fault("one", "right_grip", "lost", at=3.0)])
+    assert [faults.grip(t, "one") for t in (1.0, 2.0, 3.0, 4.0)] == [(1.0, 1.0), (0.25, 1.0), (0.25, 0.0), (1.0, 0.0)]
+    assert faults.grip(3.0, "other") == (1.0, 1.0)
+    assert changed(faults.spoil(3.0, "one", said(3.0)), 3.0) == set()
+
+
+@pytest.mark.parametrize(
+    ("kind", "part"), [("ground", "aileron"), ("ground", "pitot"), ("fixed_wing", "wheels"), ("fixed_wing", "left_grip")]
+)
+def test_a_part_that_a_vehicle_does_not_have_is_refused(kind, part):
+    with pytest.raises(BadInput, match=f"one has no {part}; it is a {kind} vehicle"):
+        check_parts([Fault("one", part, "lost", at=1.0)], {"one": kind}, HERE)

@@ -46,6 +46,9 @@ class StandingWorld:
     def touches(self, vehicle):
         return self.seen
 
+    def set_grip(self, vehicle, shares):
+        pass
+
     def guide(self, guests):
         self.guests = guests
 

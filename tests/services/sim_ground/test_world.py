@@ -179,6 +179,21 @@ def test_a_flat_body_whose_inertia_was_rounded_keeps_it(tmp_path, rounded):
     assert moments == pytest.approx((0.001, 0.001, 0.002), rel=1e-3)
 
 
+def test_a_wheel_without_grip_spins_and_the_vehicle_turns_about_it_until_the_grip_comes_back(world):
+    ahead = {"burger": DRIVE.wheels(Twist(0.2, 0.0))}
+    world.set_grip("burger", (0.0, 1.0))
+    world.advance(ahead, 0.5)
+    state = world.state("burger")
+    left, right = state.wheel_angles
+    assert left == pytest.approx(right, rel=0.1)
+    assert to_euler(state.world_from_body)[2] - 0.7 > 0.5  # to the left, about the wheel that slides
+    world.set_grip("burger", (1.0, 1.0))
+    world.advance(ahead, 0.5)
+    yaw = to_euler(world.state("burger").world_from_body)[2]
+    world.advance(ahead, 1.0)
+    assert to_euler(world.state("burger").world_from_body)[2] == pytest.approx(yaw, abs=0.02)
+
+
 def test_a_huge_speed_is_no_more_than_its_motors_can_do(world):
     world.advance({"burger": WheelSpeeds(1e300, -1e300)}, 0.5)
     world.advance({}, 2.0)

@@ -10,10 +10,28 @@ from uvf.models.keys import key, plain
 from uvf.models.yaml_data import BadInput, FileLocation
 
 Part = Literal[
-    "imu", "compass", "gnss", "air_data", "pitot", "static", "battery", "scan", "wheels", "aileron", "elevator", "rudder", "throttle"
+    "imu",
+    "compass",
+    "gnss",
+    "air_data",
+    "pitot",
+    "static",
+    "battery",
+    "scan",
+    "wheels",
+    "left_grip",
+    "right_grip",
+    "aileron",
+    "elevator",
+    "rudder",
+    "throttle",
 ]
 WITHOUT_VALUE = ("scan", "wheels")
 """Parts of which no single value can be off."""
+GRIPS = ("left_grip", "right_grip")
+"""How well a wheel holds on to the ground."""
+ON_GROUND, IN_THE_AIR = ("wheels", *GRIPS), ("air_data", "pitot", "static", "aileron", "elevator", "rudder", "throttle")
+"""Parts that only one kind of vehicle has."""
 Size = Annotated[float, Meta(ge=-1e6, le=1e6)]
 Moment = Annotated[float, Meta(ge=0, le=1e6)]
 
@@ -22,12 +40,12 @@ class Fault(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """lost: nothing comes, or where the part shares its message, zero. frozen: as it was at ``at``. bias: off by ``size``."""
 
     vehicle: Annotated[str, plain("Vehicle that has the fault.")]
-    part: Annotated[Part, plain("Sensor or servo that fails.")]
+    part: Annotated[Part, plain("Sensor, servo or grip of a wheel that fails.")]
     kind: Annotated[
         Literal["lost", "frozen", "bias"],
         plain(
-            "`lost`: no reading comes, or zero where the part shares its message. `frozen`: the reading of the time "
-            "`at`. `bias`: off by `size`."
+            "`lost`: no reading comes, or zero where the part shares its message; a wheel slides as on ice. `frozen`: the reading "
+            "of the time `at`. `bias`: off by `size`."
         ),
     ]
     at: Annotated[Moment, key("s", "Simulation time at which the fault begins.")]
@@ -37,7 +55,7 @@ class Fault(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         key(
             "unit of the part",
             "Offset of a `bias`: gnss m to the north, imu rad/s of roll rate, compass T ahead, pressures Pa, battery 0 "
-            "to 1, surfaces rad, throttle 0 to 1.",
+            "to 1, surfaces rad, throttle 0 to 1; grips -1 to 0, the share of its friction that a wheel has less.",
         ),
     ] = 0.0
 
@@ -53,7 +71,17 @@ def check_faults(faults: Sequence[Fault], vehicles: Mapping[str, object], place:
             raise BadInput(f"{place.at(i, 'vehicle')}: no vehicle '{fault.vehicle}'; there are: {', '.join(sorted(vehicles))}")
         if fault.until is not None and fault.until <= fault.at:
             raise BadInput(f"{place.at(i, 'until')}: {fault.until:g} s is not after at, {fault.at:g} s")
+        if fault.part in GRIPS and (fault.kind == "frozen" or not -1.0 <= fault.size <= 0.0):
+            raise BadInput(f"{place.at(i)}: a {fault.part} may be lost, or have a bias from -1 to 0")
         if fault.kind == "bias" and fault.part in WITHOUT_VALUE:
             raise BadInput(f"{place.at(i, 'kind')}: {fault.part} takes no bias; it may be lost or frozen")
         if fault.kind == "bias" and fault.size == 0:
             raise BadInput(f"{place.at(i)}: a bias needs a size")
+
+
+def check_parts(faults: Sequence[Fault], kinds: Mapping[str, str], place: FileLocation) -> None:
+    """Checks that vehicles have the parts that fail; kinds: of each vehicle. Raises BadInput."""
+    for i, fault in enumerate(faults):
+        missing = IN_THE_AIR if kinds[fault.vehicle] == "ground" else ON_GROUND
+        if fault.part in missing:
+            raise BadInput(f"{place.at(i, 'part')}: {fault.vehicle} has no {fault.part}; it is a {kinds[fault.vehicle]} vehicle")

@@ -6,7 +6,7 @@ from typing import Any
 
 from google.protobuf.message import Message
 
-from uvf.models.mission.faults import Fault
+from uvf.models.mission.faults import GRIPS, Fault
 from uvf.runtime.messages.outputs import Value
 
 EARTH_RADIUS = 6.371e6  # m
@@ -52,9 +52,9 @@ class Faults:
     def spoil(self, t: float, vehicle: str, read: dict[str, Value]) -> dict[str, Value]:
         """Messages of a vehicle at ``t`` [s], by output, as its faults let them arrive. The messages may be changed."""
         for number, fault in enumerate(self.faults):
-            where = PARTS[fault.part]
-            message = read.get(where.output)
-            if fault.vehicle != vehicle or not isinstance(message, Message):
+            where = PARTS.get(fault.part)
+            message = read.get(where.output) if where is not None else None
+            if where is None or fault.vehicle != vehicle or not isinstance(message, Message):
                 continue
             if not fault.holds(t):
                 self._keep(number, fault, message)
@@ -63,6 +63,14 @@ class Faults:
             else:
                 self._change(number, fault, message)
         return read
+
+    def grip(self, t: float, vehicle: str) -> tuple[float, float]:
+        """What is left of the friction of a vehicle's left and right wheel at ``t`` [s], 0 to 1."""
+        left = dict.fromkeys(GRIPS, 1.0)
+        for fault in self.faults:
+            if fault.part in left and fault.vehicle == vehicle and fault.holds(t):
+                left[fault.part] *= 1.0 + fault.size if fault.kind == "bias" else 0.0
+        return left["left_grip"], left["right_grip"]
 
     def _keep(self, number: int, fault: Fault, message: Message) -> None:
         if fault.kind == "frozen":
