@@ -1,8 +1,8 @@
 """Missions with something broken: what is still achieved, and how it ends.
 
 A row is a mission with one fault, which begins after ``AT`` s and stays; a case is ``MISSION:FAULT``. ``achieved``: every
-criterion of the mission holds. ``safe``: nothing has crashed or touched anything; at the end rovers stand, and aircraft have landed, circle
-or fly home. ``ends`` is when the run ended [s], ``off`` the largest error of the pose [m]; whatever is neither achieved nor safe
+criterion of the mission holds. ``safe``: nothing has crashed or touched anything; at the end rovers stand, and aircraft have landed or
+are flown by their autopilots. ``ends`` is when the run ended [s], ``off`` the largest error of the pose [m]; whatever is neither achieved nor safe
 keeps its log in ``runs``.
 """
 
@@ -55,7 +55,7 @@ IN_THE_AIR = {
     "battery low": fault("battery", "bias", -0.75),
     "wind beyond limits": "wind={steady: [-19.0, 6.0, 0.0]}",
 }
-SAFE_MODES = (Mode.MODE_HOLD, Mode.MODE_RETURN, Mode.MODE_LAND)
+FLOWN_BY_AUTOPILOT = (Mode.MODE_HOLD, Mode.MODE_RETURN, Mode.MODE_LAND, Mode.MODE_MISSION, Mode.MODE_FOLLOW)
 
 
 def measured(mission: str, vehicle: str, setting: str) -> tuple[dict[str, float], list[str]]:
@@ -83,7 +83,7 @@ def _wrong(name: str, history: History) -> list[str]:
         return [f"{name} tells nothing"]
     if history.is_aircraft:
         mode, landed = int(status[-1, 1]), bool(status[-1, 2])
-        return [] if landed or mode in SAFE_MODES else [f"{name} is still in mode {enum_name(Mode, mode)}"]
+        return [] if landed or mode in FLOWN_BY_AUTOPILOT else [f"{name} is still in mode {enum_name(Mode, mode)}"]
     last = truth.t >= truth.t[-1] - LOOKED_AT
     speed = float(np.hypot(*truth.velocity[last, :2].T).mean())
     wrong = [f"{name} touched something at {touched:.0f} s" for touched in touches(history)[:1]]

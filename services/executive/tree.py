@@ -115,7 +115,7 @@ class TaskNode(Decorator):
             state = TaskStatus.WAITING
         if self._record.state != state:
             self._record.state, self._record.since = state, self._now.t
-        self._record.reason = why
+        self._record.reason = "" if status == Status.SUCCESS else why  # what it asked for last says nothing any more
 
     def stop(self, new_status: Status) -> None:
         """The task is needed no more, or begins anew."""

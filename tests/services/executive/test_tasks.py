@@ -23,7 +23,7 @@ def test_a_vehicle_is_armed_brought_into_its_mode_and_told_where_to_go(tmp_path)
     assert team.states() == ["RUNNING"]
     team.arrive("anne")
     team.step(2)
-    assert (team.states(), team.tasks.state) == (["DONE"], TaskStatus.DONE)
+    assert (team.states(), team.tasks.state, team.tasks.tasks[0].reason) == (["DONE"], TaskStatus.DONE, "")
     assert team.events == ["task go begins", "task go is done"]
 
 
