@@ -1,9 +1,8 @@
 """Missions with something broken: what is still achieved, and how it ends.
 
-A row is a mission with one fault, which begins after ``AT`` s and stays; a case is ``MISSION:FAULT``. ``achieved``: every
-criterion of the mission holds. ``safe``: nothing has crashed or touched anything; at the end rovers stand, and aircraft have landed or
-are flown by their autopilots. ``ends`` is when the run ended [s], ``off`` the largest error of the pose [m]; whatever is neither achieved nor safe
-keeps its log in ``runs``.
+A row is a mission with one fault, which begins after ``AT`` s and stays; a case is ``MISSION:FAULT``. ``achieved``: every criterion of the
+mission holds. ``safe``: nothing has crashed or touched anything; at the end rovers stand, and aircraft have landed or are flown by their
+autopilots. ``ends`` is when the run ended [s], ``off`` the largest error of the pose [m]. What is neither achieved nor safe keeps its log.
 """
 
 import shutil
