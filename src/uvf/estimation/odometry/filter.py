@@ -34,6 +34,8 @@ GAP = 0.1  # s, a longer step is one in which messages are missing
 AT_REST = 0.2  # s without a tick after which the wheels count as standing: a change of direction is shorter
 SLIDES_ON = 1.0  # s after which the wheels are right whatever the accelerometer says: no vehicle slides on faster than they roll that long
 OUTRUNS = 0.05  # m/s by which it may seem to
+STEEPEST = 6.0
+"""m/s^2 of offset that an accelerometer has on a slope of 38 degrees, which no wheels climb: more is a vehicle that is spun about."""
 REST_SPEED = 0.005  # m/s, 1 sigma
 REST_GATE = 16.0
 WHEEL_PERIOD = 0.02  # s, over which the turn rate that is told is a mean
@@ -211,18 +213,21 @@ class DriveFilter:
             else:
                 self.doubt = wheel_cause(name, speed, speed - innovation)
         self._doubted_for = self._doubted_for + step.dt if self.doubt else 0.0
-        if self._doubted_for > SLIDES_ON:
-            side = self.track / 2 * turn
-            self._hold_back((step.left + side) / step.dt, (step.right - side) / step.dt)
+        side = self.track / 2 * turn
+        self._hold_back((step.left + side) / step.dt, (step.right - side) / step.dt)
 
     def _hold_back(self, left: float, right: float) -> None:
         """Wheels that slip roll faster than the vehicle moves: what has outrun them for long is an error of the accelerometer.
 
-        left, right: speed [m/s] of the vehicle by each wheel.
+        So is an offset that it cannot have. left, right: speed [m/s] of the vehicle by each wheel.
         """
-        if abs(float(self.kalman.x[SPEED])) <= max(abs(left), abs(right)) + OUTRUNS:
+        has_outrun = abs(float(self.kalman.x[SPEED])) > max(abs(left), abs(right)) + OUTRUNS
+        is_spun = abs(float(self.kalman.x[ACCEL_OFFSET])) > STEEPEST
+        if not is_spun and not (has_outrun and self._doubted_for > SLIDES_ON):
             return
         self.kalman.x[SPEED] = (left + right) / 2
+        if is_spun:
+            self.kalman.x[ACCEL_OFFSET] = 0.0
         self._doubt(SPEED, START_SPEED)
         self._doubt(ACCEL_OFFSET, self.noise.offset_start)
         self._watches = {LEFT: WheelWatch(), RIGHT: WheelWatch()}
