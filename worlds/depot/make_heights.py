@@ -6,7 +6,7 @@ import numpy as np
 from PIL import Image
 
 EAST, NORTH, CELL = 120.0, 100.0, 0.5  # m
-MOUNDS = ((19.0, 11.0, 2.4, 4.5), (-26.0, 17.0, 3.0, 6.0))  # m: x, y, height, radius
+MOUNDS = ((19.0, 11.0, 3.2, 4.5), (-26.0, 17.0, 4.0, 6.0))  # m: x, y, height, radius
 
 
 def heights() -> np.ndarray:
@@ -15,7 +15,7 @@ def heights() -> np.ndarray:
     land = np.zeros_like(x)
     for east, north, up, radius in MOUNDS:
         share = np.clip(1.0 - np.hypot(x - east, y - north) / radius, 0.0, 1.0)
-        land += up * share * share * (3.0 - 2.0 * share)
+        land += up * share
     return land
 
 
