@@ -89,7 +89,7 @@ class RecordedRun:
             scorer.heard(sample)
 
 
-_TOLD = (topics.NAV_STATUS.at("").removeprefix("uvf//"), topics.STATUS.at("").removeprefix("uvf//"))
+_TOLD = ("nav/status", "state/vehicle")
 
 
 @contextlib.contextmanager

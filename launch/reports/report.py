@@ -17,7 +17,8 @@ from schemas.messages import Event, NavStatus, TaskStatus
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.enum_names import enum_name
 
-PAGE, TEAM = "report.html", "ways.png"
+PAGE, TEAM = "report.html", "all-ways.png"
+"""No vehicle is called so: names have no hyphen."""
 MOST_EVENTS = 500
 SEVERE = Event.NOTICE
 

@@ -59,7 +59,7 @@ def _over_world(axes: Any, run: RecordedRun, _: GridMap | None) -> None:
 def _over_floor(axes: Any, run: RecordedRun, team_map: GridMap | None) -> None:
     """Where the rovers are, without the wide turns of the aircraft."""
     _over_world(axes, run, team_map)
-    rovers = np.concatenate([way_of(history) for history in run.vehicles.values() if not history.is_aircraft])
+    rovers = _ways_of_rovers(run)
     if run.site is not None:
         rovers = np.concatenate((rovers, np.reshape(run.site.world.floor, (2, 2))))
     _frame(axes, rovers)
@@ -70,7 +70,7 @@ def _over_map(axes: Any, run: RecordedRun, team_map: GridMap | None) -> None:
     assert team_map is not None
     draw_map(axes, team_map)
     _ways(axes, run)
-    _frame(axes, np.concatenate([way_of(history) for history in run.vehicles.values() if not history.is_aircraft]))
+    _frame(axes, _ways_of_rovers(run))
     finish(axes, "ways over the team's map", 4)
 
 
@@ -99,7 +99,14 @@ def _ways(axes: Any, run: RecordedRun) -> None:
     axes.set_ylabel("y (north), m", fontsize=9)
 
 
+def _ways_of_rovers(run: RecordedRun) -> Floats:
+    """(k, 2) m, one after the other."""
+    return np.concatenate([np.zeros((0, 2)), *(way_of(history) for history in run.vehicles.values() if not history.is_aircraft)])
+
+
 def _frame(axes: Any, points: Floats) -> None:
+    if not len(points):
+        return
     low, high = points.min(axis=0), points.max(axis=0)
     margin = MARGIN * float((high - low).max()) + 0.5
     axes.set_xlim(low[0] - margin, high[0] + margin)

@@ -61,7 +61,7 @@ def made(tmp_path_factory):
     return write(tmp_path_factory.mktemp("made") / "log-000.mcap", straight_flight())
 
 
-PAGES = {"kite.png", "report.html", "ways.png"}
+PAGES = {"kite.png", "report.html", "all-ways.png"}
 
 
 def kite_of(log):

@@ -15,10 +15,11 @@ from launch.reports.recorded_run import recorded_run
 from launch.run import run_lockstep
 from schemas import topics
 from schemas.messages import Contact, Event, Kind, NavState, NavStatus, PoseInFrame, Quaternion, Tasks, TaskStatus, Vector3, VehicleStatus
+from uvf.maths.se2 import Pose2
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.log.recording import Recorder
-from uvf.runtime.messages.convert import planar_pose, stamp
+from uvf.runtime.messages.convert import occupancy_grid, planar_frame, planar_pose, stamp
 
 SECONDS = 12.0
 
@@ -59,7 +60,7 @@ class Page(HTMLParser):
 def test_one_page_tells_of_all_vehicles_and_loads_nothing(run, tmp_path):
     code, said = uvf("report", run, "--out", tmp_path / "out")
     assert code == 0, said
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"report.html", "ways.png", "burger.png", "milvus.png"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"report.html", "all-ways.png", "burger.png", "milvus.png"}
     page = Page(tmp_path / "out" / "report.html")
     assert len(page.loads) == 3 and all(each.startswith("data:image/png;base64,") for each in page.loads)
     for part in ("demo", "Criteria", "burger", "milvus", "Maps", "Events", "Messages", "Parameters", "jsbsim", "pybullet", "world: house"):
@@ -151,3 +152,23 @@ def test_a_run_without_a_mission_says_so_and_is_reported_on(tmp_path):
     assert code == 0 and "no mission is attached" in said.replace("\n", " ")
     assert (tmp_path / "out" / "rover.png").stat().st_size > 20_000
     assert uvf("compare", tmp_path, tmp_path, "--out", tmp_path / "both")[0] == 0
+
+
+@pytest.mark.parametrize("kept", ["truth/state", "nav/pose", "sensor/contact", "state/vehicle", "nav/status", "state/events"])
+@pytest.mark.parametrize("least", [1, 2, 1000])
+def test_any_part_of_a_rovers_messages_gives_a_page(tmp_path, kept, least):
+    samples = [each for each in drive() if (each[0] if isinstance(each[0], str) else each[0].at("rover")).startswith(f"uvf/rover/{kept}")]
+    status = topics.STATUS, VehicleStatus(kind=Kind.KIND_GROUND), 0.05
+    written(tmp_path / "log-000.mcap", [status, *samples[:least]])
+    code, said = uvf("report", tmp_path)
+    assert code == 0, said
+
+
+def test_vehicles_that_have_only_drawn_a_map_are_reported_on(tmp_path):
+    """Of a robot elsewhere, say: it has told neither where it was nor what it is."""
+    grid = occupancy_grid(np.zeros((20, 30), dtype=np.int8), 0.05, 0.0, 0.0, "rover/map", 1.0)
+    place = planar_frame(0.0, "world", "rover/map", Pose2(1.0, 2.0, 0.5))
+    written(tmp_path / "log-000.mcap", [(topics.TF_WORLD, place, 0.0), (topics.MAP, grid, 1.0), (topics.TEAM_MAP, grid, 1.0)])
+    code, said = uvf("report", tmp_path)
+    assert code == 0, said
+    assert "team of rover" in Page(tmp_path / "report" / "report.html").text
