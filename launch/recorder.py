@@ -19,6 +19,7 @@ from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.zenoh_bus import ZenohBus
 from uvf.runtime.log.bounds import REFUSED
 from uvf.runtime.log.recording import DEPTH, Recorder
+from uvf.runtime.log.versions import versions
 
 FLUSH_PERIOD = 1.0  # s
 ROTATE_BYTES = 500_000_000
@@ -73,7 +74,7 @@ class LogSeries:
     def _begin(self, before: Recorder | None) -> Recorder:
         """The next file, with its head on the disk; if the disk refuses that, ``error`` says so and nothing is left behind."""
         path = self._folder / f"log-{self._number:03}.mcap"
-        begun = Recorder(path, self._attachments, before)
+        begun = Recorder(path, self._attachments, before, versions())
         begun.flush()
         if begun.error:
             begun.close()

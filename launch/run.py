@@ -12,6 +12,7 @@ from launch.scoring.last_words import LastWords
 from launch.scoring.scores import Scorer, Verdict
 from uvf.models.scenario import Scenario
 from uvf.runtime.log.recording import Recorder
+from uvf.runtime.log.versions import versions
 from uvf.runtime.time.lockstep import Lockstep
 
 AFTERWARDS = 1.0  # s after the last task, in which vehicles come to rest
@@ -65,7 +66,7 @@ def run_lockstep(
         reached = t
         return scorer.tasks.ended is None or t < scorer.tasks.ended + afterwards
 
-    with Recorder(log, attachments(site)) as recorder:
+    with Recorder(log, attachments(site), made_with=versions()) as recorder:
         lockstep = Lockstep(hosts, warn=warn, contains=True)
         try:
             recorder.follow(lockstep.bus)

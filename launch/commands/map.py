@@ -37,6 +37,8 @@ def map_save(
             if session:
                 raise BadInput("--session: a log holds no session; leave it out, or save while the mission runs")
             owner, grid = recorded_map(log_path(run, "run"), vehicle, layer, own_frame)
+        elif layer != "grid":
+            raise BadInput(f"--layer {layer}: of a past run only; name it with --run")
         else:
             owner, grid = drawn_map(vehicle, own_frame)
         yaml = save_map(grid, map_path(name), mode)

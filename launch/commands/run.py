@@ -8,6 +8,7 @@ from statistics import median
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
@@ -86,7 +87,7 @@ def criteria_table(verdicts: Sequence[Verdict]) -> Table:
     table = Table("subject", "measure", "value", "limit", "", "decided by")
     for verdict in verdicts:
         row = (escaped(verdict.subject), verdict.criterion.measure, f"{verdict.found.value:.3g}", verdict.limits)
-        table.add_row(*row, "passed" if verdict.passed else "FAILED", escaped(verdict.found.circumstances))
+        table.add_row(*row, "passed" if verdict.passed else "FAILED", escape(escaped(verdict.found.circumstances)))
     return table
 
 

@@ -2,8 +2,11 @@
 
 from typing import Any
 
+import matplotlib
 import numpy as np
 from numpy.typing import NDArray
+
+matplotlib.rcParams["text.parse_math"] = False  # names and events are told as they are, whatever $ they hold
 
 Floats = NDArray[np.float64]
 

@@ -65,7 +65,7 @@ def _columns(rows: list[tuple[float, float]]) -> tuple[Floats, Floats]:
 
 
 def draw_curves(run: Path, fields: Sequence[str], target: Path) -> Curves:
-    """Draws a panel for each field, one below the other, over one axis of time into a PNG; returns all curves. Raises BadInput."""
+    """Draws a panel for each field, one below the other, over one axis of time into a file; returns all curves. Raises BadInput."""
     if (kind := target.suffix.removeprefix(".").lower()) not in KINDS:
         raise BadInput(f"--out {target}: no picture ends so; {nearest(kind, KINDS)}")
     drawn: Curves = {}

@@ -14,7 +14,6 @@ Floats = NDArray[np.float64]
 
 MOVING = 0.02  # m/s, from which on a rover drives
 SMOOTHED = 5  # samples: accelerations are those of speeds averaged over so many
-DRIVING = (NavStatus.DRIVING, NavStatus.RECOVERING, NavStatus.PLANNING)
 
 
 def forward_speed(motion: FlownMotion) -> Floats:
@@ -88,8 +87,8 @@ def _planner(history: History) -> Iterator[Figure]:
     rows = history.rows("nav/status")
     if not len(rows):
         return
-    states = [status.state for _, status in history.navigation]
-    yield Figure("goals reached, given up", f"{states.count(NavStatus.REACHED)}, {states.count(NavStatus.BLOCKED)}")
+    reached, given_up = (_times(rows[:, 1] == state) for state in (NavStatus.REACHED, NavStatus.BLOCKED))
+    yield Figure("goals reached, given up", f"{reached}, {given_up}")
     yield Figure("recoveries", f"{np.maximum(np.diff(rows[:, 4], prepend=0.0), 0.0).sum():.0f}")
     if rows[-1, 3] > 0.0:
         yield Figure("explored", f"{100 * rows[-1, 3]:.0f} %")
@@ -102,6 +101,11 @@ def _happenings(history: History) -> Iterator[Figure]:
     yield Figure("contacts", f"{len(touches(history))}")
     grave = sum(event.severity >= Event.WARNING for _, event in history.events)
     yield Figure("events, warnings and worse", f"{len(history.events)}, {grave}")
+
+
+def _times(holds: NDArray[np.bool_]) -> int:
+    """How often something began to hold."""
+    return int(np.count_nonzero(np.diff(holds, prepend=False) & holds))
 
 
 def _rms(values: Floats) -> float:

@@ -70,7 +70,7 @@ STREAMS = {
 }
 DRIVES = RecordedStream(DriveCommand, lambda m: (m.linear, m.angular), 2, 0.0)
 """``cmd/<source>``, of the source that the vehicle obeys at the time."""
-MAPS = ("map/grid", "map/team", "map/heights", "map/shared")
+MAPS = ("map/grid", "map/team")
 
 
 class Series:

@@ -4,22 +4,19 @@ from dataclasses import dataclass
 
 from launch.reports.history import History
 from launch.reports.recorded_run import RecordedRun
+from launch.scoring.map_measures import true_plan
 from schemas.messages import Grid
 from services.slam.map_server import in_world
 from uvf.maths.se2 import IDENTITY
-from uvf.models.world.geometry import FloorPlan, floor_plan
 from uvf.models.world.map_file import GridMap
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.grids import as_map
 from uvf.slam.maps.quality import MapScore, score
 
-PLAN_CELL = 0.02  # m
-LARGEST = 40_000_000  # cells of a floor plan
-
 
 @dataclass(frozen=True)
 class ReportedMap:
-    """A map at the end of a run; score: None where the world is not known, or too large."""
+    """A map at the end of a run; score: None where the world is not known."""
 
     name: str
     grid: GridMap
@@ -42,15 +39,8 @@ def reported_maps(run: RecordedRun) -> list[ReportedMap]:
     found = [(name, own_map(history)) for name, history in run.vehicles.items()]
     found += [(f"team of {name}", own_map(history, "map/team")) for name, history in run.vehicles.items()]
     drawn = [(name, grid) for name, grid in found if grid is not None]
-    plan = _plan(run) if drawn else None
+    plan = true_plan(run.site.world) if drawn and run.site is not None else None
     return [ReportedMap(name, grid, None if plan is None else score(grid, plan, IDENTITY)) for name, grid in drawn]
-
-
-def _plan(run: RecordedRun) -> FloorPlan | None:
-    if run.site is None:
-        return None
-    x_min, y_min, x_max, y_max = run.site.world.floor
-    return floor_plan(run.site.world, PLAN_CELL) if (x_max - x_min) * (y_max - y_min) / PLAN_CELL**2 <= LARGEST else None
 
 
 def team_map(maps: list[ReportedMap]) -> GridMap | None:

@@ -70,11 +70,13 @@ class RecordedRun:
         """Stores a message. Raises Malformed."""
         self.traffic.heard(sample)
         self.end = max(self.end, sample.stamp_ns / NS)
-        _, owner, *rest = sample.key.split("/", 2)
-        if not rest or topic_of(sample.key) is None or not re.fullmatch(VEHICLE, owner):
+        _, owner, *rest = [*sample.key.split("/", 2), ""][:3]
+        if topic_of(sample.key) is None or not re.fullmatch(VEHICLE, owner):
             return
         if owner != SYSTEM:
-            self.vehicles.setdefault(owner, History(owner)).heard(rest[0], sample)
+            history = self.vehicles.get(owner) or History(owner)
+            history.heard(rest[0], sample)
+            self.vehicles[owner] = history
             if rest[0] in _TOLD or rest[0].startswith("state/events/"):
                 self.told.heard(sample)
         elif sample.key == topics.TASKS.at(SYSTEM):

@@ -20,7 +20,6 @@ class TopicTraffic:
     """What came on one key; times [s, simulation]."""
 
     key: str
-    type_name: str
     topic: Topic[Any] | None
     count: int = 0
     size: int = 0  # bytes
@@ -77,7 +76,7 @@ class Traffic:
     def heard(self, sample: Sample) -> None:
         """Counts a message."""
         if sample.key not in self._keys:
-            self._keys[sample.key] = TopicTraffic(sample.key, sample.type_name, topic_of(sample.key))
+            self._keys[sample.key] = TopicTraffic(sample.key, topic_of(sample.key))
         self._keys[sample.key].add(sample)
 
     @property

@@ -10,7 +10,9 @@ from uvf.maths.raycast import Rays, cast
 from uvf.maths.se2 import Pose2
 from uvf.models.scenario import Scenario
 from uvf.models.shapes.scene import scene
-from uvf.models.world.geometry import floor_plan, solids
+from uvf.models.world.file import WorldFile
+from uvf.models.world.geometry import FloorPlan, floor_plan, solids
+from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.grids import as_map
 from uvf.runtime.messages.height_grids import heights_of
 from uvf.runtime.messages.mapped_floor import MappedFloor
@@ -18,7 +20,9 @@ from uvf.slam.maps.quality import MapScore, score
 
 Floats = NDArray[np.float64]
 
-PLAN_CELL = 0.02  # m
+PLAN_CELL, MOST_CELLS = 0.02, 4_000_000
+"""m, of the floor plan that maps are held against; in larger cells, so that it has no more than that many."""
+AT_ONCE = 20_000  # columns whose heights are looked at together
 ABOVE = 1000.0  # m, from where the world is looked at for its heights
 EVEN = 0.25  # m, by which heights in and next to a column may differ: at the edge of a wall no height of a column is the right one
 PROBES = np.array([(0.0, 0.0)] + [(x, y) for x in (-1.5, -0.5, 0.5, 1.5) for y in (-1.5, -0.5, 0.5, 1.5)])
@@ -43,7 +47,10 @@ def map_f1(track: RecordedTrack) -> Finding:
     """
     if track.grid is None:
         return Finding(0.0, note="there is no map")
-    tight, loose = _score(track.grid, track).walls.detections
+    try:
+        tight, loose = _score(track.grid, track).walls.detections
+    except BadInput as error:
+        return Finding(0.0, note=str(error))
     return Finding(loose.f1, note=f"{tight.f1:.2f} within 0.05 m")
 
 
@@ -56,7 +63,10 @@ def height_error(track: RecordedTrack) -> Finding:
     if track.heights is None:
         return Finding(np.inf, note="there is no map of heights")
     grid = Grid.FromString(track.heights)
-    top = heights_of(grid)[0].astype(np.float64)
+    try:
+        top = heights_of(grid)[0].astype(np.float64)
+    except BadInput as error:
+        return Finding(np.inf, note=str(error))
     rows, columns = np.nonzero(np.isfinite(top))
     corner = np.array((grid.pose.position.x, grid.pose.position.y))
     centres: Floats = corner + (np.column_stack((columns, rows)) + 0.5) * grid.cell_size.x
@@ -64,16 +74,23 @@ def height_error(track: RecordedTrack) -> Finding:
     low, high = np.reshape(track.site.world.floor, (2, 2))
     inside = ((centres >= low) & (centres <= high)).all(axis=1)
     centres, mapped = centres[inside], mapped[inside]
-    true, even = _surface(track.site, centres, grid.cell_size.x)
+    parts = [_surface(track.site, part, grid.cell_size.x) for part in np.array_split(centres, len(centres) // AT_ONCE + 1)]
+    true, even = np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
     if not even.any():
         return Finding(np.inf, note="no column of it lies on the world's floor")
     errors = (mapped - true)[even]
     return Finding(float(np.sqrt(np.mean(errors**2))), note=f"median {np.median(np.abs(errors)):.2f} m of {len(errors)} columns")
 
 
+def true_plan(world: WorldFile) -> FloorPlan:
+    """The floor plan that maps are held against."""
+    x_min, y_min, x_max, y_max = world.floor
+    return floor_plan(world, max(PLAN_CELL, float(np.sqrt((x_max - x_min) * (y_max - y_min) / MOST_CELLS))))
+
+
 def _score(message: Grid, track: RecordedTrack) -> MapScore:
     grid, start = as_map(message), track.site.members[track.name].entry.start
-    return score(grid, floor_plan(track.site.world, PLAN_CELL), Pose2(start.x, start.y, start.yaw))
+    return score(grid, true_plan(track.site.world), Pose2(start.x, start.y, start.yaw))
 
 
 def _surface(site: Scenario, centres: Floats, side: float) -> tuple[Floats, NDArray[np.bool_]]:

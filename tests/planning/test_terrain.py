@@ -72,3 +72,18 @@ def test_only_obstacles_seen_from_above_count_more_than_own_free_ground(outranks
     shared, own = np.full((2, 2), 100, dtype=np.int8), np.zeros((2, 2), dtype=np.int8)
     cells, _ = SharedMap(shared, 0.5, Pose2(0.0, 0.0, 0.0), outranks=outranks).below(own, (0.5, (0.0, 0.0)))
     assert (cells == (100 if outranks else 0)).all()
+
+
+def test_a_steep_slope_that_can_be_driven_is_no_step_in_large_cells():
+    slope = np.add.outer(np.arange(40), np.arange(60)).astype(np.float32) * np.tan(0.25).astype(np.float32) / np.sqrt(2.0)
+    cells = terrain_obstacles((slope, slope), 1.0, LIMITS)
+    assert (cells[5:-5, 5:-5] == 0).all()
+
+
+@pytest.mark.parametrize("column", [40, 41])
+def test_a_wall_one_cell_thick_is_none_the_less_there_in_larger_cells(column):
+    fine = np.zeros((80, 80), dtype=np.int8)
+    fine[:, column] = 100
+    shared = SharedMap(fine, 0.05, Pose2(0.0, 0.0, 0.0), outranks=False)
+    both, _ = shared.below(np.full((10, 10), -1, dtype=np.int8), (0.1, (0.0, 0.0)))
+    assert (both == 100).sum() == 40 and (both[:, 20] == 100).all()

@@ -27,7 +27,7 @@ class ElevationParams(Params, frozen=True):
     """Parameters of the elevation map."""
 
     resolution: Annotated[float, Meta(ge=0.05, le=10), key("m", "Side of a column.")] = 0.25
-    gate: Annotated[float, Meta(gt=0, le=10), key("m", "Difference in height from which on a point belongs to another surface.")] = 0.5
+    gate: Annotated[float, Meta(gt=0, le=10), key("m", "Difference in height from which on a point belongs to another surface.")] = 0.25
     map_period: Annotated[float, Meta(gt=0), key("s", "Time between publications.")] = 10.0
 
 

@@ -1,5 +1,6 @@
 """``uvf report`` and ``uvf compare`` on runs of rovers and of teams: what was recorded is told, and a stranger's text stays text."""
 
+import contextlib
 import re
 from html.parser import HTMLParser
 
@@ -18,6 +19,7 @@ from schemas.messages import Contact, Event, Kind, NavState, NavStatus, PoseInFr
 from uvf.maths.se2 import Pose2
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.bus.interface import Sample
+from uvf.runtime.bus.wire import Malformed
 from uvf.runtime.log.recording import Recorder
 from uvf.runtime.messages.convert import occupancy_grid, planar_frame, planar_pose, stamp
 
@@ -172,3 +174,20 @@ def test_vehicles_that_have_only_drawn_a_map_are_reported_on(tmp_path):
     code, said = uvf("report", tmp_path)
     assert code == 0, said
     assert "team of rover" in Page(tmp_path / "report" / "report.html").text
+
+
+def test_names_and_events_are_no_formulas_and_no_markup(tmp_path):
+    written(tmp_path / "log-000.mcap", drive("cost $x^$ high [/red]"))
+    code, said = uvf("report", tmp_path)
+    assert code == 0, said
+
+
+def test_a_stranger_that_nobody_understood_is_no_vehicle(tmp_path):
+    broken = Sample("uvf/ghost/nav/pose", "wrong", b"", 10**9, 1, 0)
+    foreign = Sample("clock", "other.Clock", b"", 10**9, 1, 0)
+    written(tmp_path / "log-000.mcap", drive())
+    with recorded_run(tmp_path) as run:
+        for sample in (broken, foreign):
+            with contextlib.suppress(Malformed):
+                run.take(sample, None)
+        assert list(run.vehicles) == ["rover"]

@@ -5,6 +5,7 @@ import pytest
 
 from launch.scoring.scores import Scorer
 from schemas import topics
+from schemas.messages import Grid
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.world.geometry import floor_plan
 from uvf.runtime.bus.interface import Sample
@@ -59,3 +60,9 @@ def test_heights_beyond_the_floor_do_not_count():
     far = heights_message(np.zeros((4, 4), dtype=np.float32), np.zeros((4, 4), dtype=np.float32), SIDE, (200.0, 0.0), 1.0)
     assert measured(OUTDOORS, "eye", "height_error", topics.HEIGHTS, far).note == "no column of it lies on the world's floor"
     assert measured(OUTDOORS, "eye", "height_error").value == np.inf
+
+
+def test_a_map_that_is_none_has_a_figure_and_a_reason():
+    nonsense = Grid(column_count=3, data=b"x")
+    assert measured(OUTDOORS, "eye", "height_error", topics.HEIGHTS, nonsense).note.startswith("a grid of 3 columns")
+    assert measured(INDOORS, "burger", "map_f1", topics.MAP, nonsense).note.startswith("a grid of 3 columns")

@@ -269,3 +269,12 @@ def test_a_damaged_chunk_costs_no_more_than_itself_and_nothing_false_is_handed_o
     assert len(true) - 3 * 400 // len(offsets) <= count < len(true)
     assert saved.items() <= true.items()
     assert told or damage in ("a record's head", "a length")
+
+
+def test_what_it_was_made_with_is_told_by_the_run_and_not_by_who_copies_it(tmp_path):
+    with Recorder(tmp_path / "a.mcap", made_with={"jsbsim": "1.0"}):
+        pass
+    with Recorder(tmp_path / "b.mcap"):
+        pass
+    assert log_metadata(tmp_path / "a.mcap")["jsbsim"] == "1.0"
+    assert "jsbsim" not in log_metadata(tmp_path / "b.mcap")

@@ -56,7 +56,7 @@ class SharedMap:
         return transform(self._map_from_cells, np.array(((0, 0), (columns, 0), (0, rows), (columns, rows))) * self._resolution)
 
     def _as_cells_of(self, frame: Frame) -> tuple[Cells, Frame]:
-        """This map in cells of the vehicle's own one, by the value at their centres."""
+        """This map in cells of the vehicle's own one, by the value at their centres; no obstacle is lost between them."""
         resolution, (x, y) = frame
         rows, columns = self._cells.shape
         corners = self._rim()
@@ -68,4 +68,10 @@ class SharedMap:
         inside = ((at >= 0) & (at < (columns, rows))).all(axis=1)
         drawn = np.full(across.size, UNKNOWN, dtype=np.int8)
         drawn[inside] = self._cells[at[inside, 1], at[inside, 0]]
-        return drawn.reshape(across.shape), (resolution, (x + low[0] * resolution, y + low[1] * resolution))
+        cells = drawn.reshape(across.shape)
+        corner = x + low[0] * resolution, y + low[1] * resolution
+        obstacles = np.argwhere(self._cells >= OCCUPIED)
+        places = transform(self._map_from_cells, (obstacles[:, ::-1].astype(np.float64) + 0.5) * self._resolution)
+        column, row = np.floor((places - corner) / resolution).astype(np.int64).T
+        np.maximum.at(cells, (row, column), self._cells[obstacles[:, 0], obstacles[:, 1]])
+        return cells, (resolution, corner)

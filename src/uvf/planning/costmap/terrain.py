@@ -36,7 +36,8 @@ def terrain_obstacles(heights: tuple[Singles, Singles], resolution: float, limit
     distance, nearest = ndimage.distance_transform_edt(~known, return_indices=True)
     top, ground = (np.asarray(each, dtype=np.float64)[tuple(nearest)] for each in heights)
     seen = distance * resolution <= HOLES
-    blocked = (top - ground > limits.step) | _higher_of_steps(ground, limits.step)
+    climb = np.tan(limits.slope) * np.sqrt(2.0) * resolution  # that a slope which can be driven has from a cell to the next one
+    blocked = (top - ground > limits.step) | _higher_of_steps(ground, max(limits.step, float(climb)))
     level = seen & ~ndimage.binary_dilation(blocked, BESIDE)
     blocked |= _slope(ground, level, resolution) > np.tan(limits.slope)
     return np.where(seen, np.where(blocked, OCCUPIED, FREE), UNKNOWN).astype(np.int8)

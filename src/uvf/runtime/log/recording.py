@@ -20,7 +20,6 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.envelope import WRAP, GapCounter
 from uvf.runtime.bus.interface import Bus, Sample
 from uvf.runtime.log.bounds import Admission, Standing
-from uvf.runtime.log.versions import versions
 from uvf.runtime.messages.topic_lookup import MESSAGES, topic_of
 
 CHUNK = 1_000_000  # bytes
@@ -58,12 +57,22 @@ class Recorder:
     Sequence numbers have 32 bits in a log: after 4294967295 comes 0. What no log can hold is refused and counted.
     """
 
-    def __init__(self, path: Path, attachments: Mapping[str, bytes] | None = None, before: "Recorder | None" = None) -> None:
-        """attachments: contents by name. Raises BadInput where nothing can be written, except for want of space: see ``error``."""
+    def __init__(
+        self,
+        path: Path,
+        attachments: Mapping[str, bytes] | None = None,
+        before: "Recorder | None" = None,
+        made_with: Mapping[str, str] | None = None,
+    ) -> None:
+        """attachments: contents by name; made_with: versions by name.
+
+        Raises BadInput where nothing can be written, except for want of space: see ``error``.
+        """
         self.path = path
         self.error = ""
         """Why nothing is written any more; such a recorder still remembers what stands, for the file after it."""
         self.written = 0
+        self._made_with = dict(made_with or {})
         self.hash = LogHash()
         self._file = self._open()
         self._writer = Writer(self._file, chunk_size=CHUNK, compression=CompressionType.ZSTD)
@@ -185,7 +194,7 @@ class Recorder:
         complete = str(not self.gaps and not self.refused).lower()
         summary = {"messages": str(self.written), "carried": str(self.carried), "complete": complete, "hash": self.hash.hexdigest()}
         refused = {f"refused {why}": str(n) for why, n in self.refused.items()}
-        return summary | versions() | refused | {f"gap {key}": str(n) for key, n in self.gaps.items()}
+        return summary | self._made_with | refused | {f"gap {key}": str(n) for key, n in self.gaps.items()}
 
 
 def stands(key: str) -> bool:

@@ -94,6 +94,8 @@ def columns_of(message: Descriptor) -> dict[str, tuple[type, Getter]]:
             found[name] = str, _enum_name(field)
         elif field.type == FieldDescriptor.TYPE_BYTES:
             found[f"{name}_size"] = int, _composed([_named(name), len])
+        elif field.cpp_type == FieldDescriptor.CPPTYPE_UINT64:  # numbers of things: no table has integers so large
+            found[name] = str, _composed([_named(name), str])
         else:
             found[name] = _TYPES.get(field.cpp_type, int), _named(name)
     return found

@@ -19,7 +19,7 @@ GROW = 64  # columns that the map grows by, so that it seldom does
 MOST_COLUMNS = 4_000_000
 """32 MB of heights."""
 FORGETS = 50
-"""Points that a mean is made of: later ones weigh no less than 1 / this, so that a pose that was off is forgotten."""
+"""Points that a mean is made of: later ones weigh no less than 1 / this. A surface beyond the gate, once hit, stays."""
 
 
 class MapFull(ValueError):
