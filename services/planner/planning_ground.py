@@ -39,6 +39,7 @@ class PlanningGround:
         self._hidden = HiddenObstacles(SIZE, RESOLUTION, LIFETIME)
         self._keep_out = MaskReader()
         self._shared: Grid | None = None
+        self._limits: TerrainLimits | None = None
         self._told_fault = ""
         self._map_stamp = -1.0
         self._cleared = -1
@@ -60,8 +61,8 @@ class PlanningGround:
 
     def share(self, grid: Grid | None, limits: TerrainLimits) -> str:
         """Takes a map that another vehicle has made; what has come to be wrong with it, "" if nothing or known before."""
-        if grid is not None and grid is not self._shared and grid != self._shared:
-            self._shared, self._told_fault = grid, ""
+        if grid is not None and (limits != self._limits or (grid is not self._shared and grid != self._shared)):
+            self._shared, self._limits, self._told_fault = grid, limits, ""
             try:
                 cells = terrain_obstacles(heights_of(grid), grid.cell_size.x, limits) if has_heights(grid) else as_map(grid).cells
             except BadInput as error:

@@ -14,6 +14,7 @@ import numpy as np
 from uvf.models.mission.extending import merge
 from uvf.models.mission.faults import check_parts
 from uvf.models.mission.file import MissionFile, Vehicle, load_mission
+from uvf.models.mission.task_check import check_shares
 from uvf.models.params import Params
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.world.file import WorldFile, load_world
@@ -114,5 +115,7 @@ def load_scenario(mission: str | Path, root: str | Path = ROOT) -> Scenario:
     }
     site = Scenario(mission, data, load_world(worlds, data.world, place.at("world")), worlds / data.world, members)
     check_starts(site)
-    check_parts(data.faults, {name: file.kind for name, file in files.items()}, place.at("faults"))
+    kinds = {name: file.kind for name, file in files.items()}
+    check_parts(data.faults, kinds, place.at("faults"))
+    check_shares(data.tasks, data.roles, kinds, place)
     return site

@@ -108,3 +108,19 @@ def _check_condition(condition: TaskCondition, known: set[str], place: FileLocat
     for name in (condition.task, condition.failed):
         if name is not None and name not in known:
             raise BadInput(f"{place}: no task is called '{name}'; {nearest(name, known)}")
+
+
+def check_shares(tasks: list[Task], roles: Roles, kinds: Mapping[str, str], file: FileLocation) -> None:
+    """Checks that maps which are handed over can be drawn and used; kinds: of each vehicle. Raises BadInput."""
+    for task, place in _placed(tasks, file.at("tasks")):
+        if (share := task.share_map) is None:
+            continue
+        here = place.at("share_map")
+        layer = "grid" if kinds[share.vehicle] == "ground" else "heights"
+        if share.layer != layer:
+            raise BadInput(f"{here.at('layer')}: {share.vehicle} has no {share.layer}; a {kinds[share.vehicle]} vehicle has its {layer}")
+        if share.area is not None and layer == "grid":
+            raise BadInput(f"{here.at('area')}: a grid is handed over as a whole; leave the area out")
+        for name in members_of(share.to, roles):
+            if kinds[name] != "ground":
+                raise BadInput(f"{here.at('to')}: {name} does not drive; only ground vehicles plan by such a map")
