@@ -15,7 +15,10 @@ BEYOND = (7.0, 1.0)
 
 
 def corridor(wall=None):
-    """World heights of a strip from 2 m before the map to 10 m behind it, level but for a ``wall`` [m high] at 5 m (map x), from 0.5 m (map y) on."""
+    """World heights of a level strip, from 2 m before the map to 10 m behind it.
+
+    wall: how high [m] it is that stands at 5 m (map x), from 0.5 m (map y) on.
+    """
     ground = np.zeros((round(12.0 / SIDE), round(3.0 / SIDE)), dtype=np.float32)
     top = ground.copy()
     if wall is not None:
