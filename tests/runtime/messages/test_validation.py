@@ -25,7 +25,6 @@ from schemas.messages import (
 from uvf.runtime.bus.wire import Malformed, decode
 from uvf.runtime.mavlink.mission_items import ORIGIN
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose
-from uvf.runtime.messages.height_grids import heights_message
 from uvf.runtime.messages.validation import IDS, error_in
 
 FLOATS = (FieldDescriptor.TYPE_DOUBLE, FieldDescriptor.TYPE_FLOAT)
@@ -228,11 +227,3 @@ def test_the_line_names_key_and_type():
     broken = Imu(angular_velocity=Vector3(z=math.nan)).SerializeToString()
     with pytest.raises(Malformed, match=r"^uvf/v/sensor/imu: broken uvf\.v1\.Imu: angular_velocity\.z: nan is not finite"):
         decode("uvf/v/sensor/imu", broken, Imu)
-
-
-def test_a_long_strip_of_heights_is_a_map():
-    z = np.zeros((20_000, 10), dtype=np.float32)
-    assert error_in(heights_message(z, z, 0.25, (0.0, 0.0), 0.0)) == ""
-    assert "more than 50000 cells" in error_in(
-        heights_message(np.zeros((50_001, 2), np.float32), np.zeros((50_001, 2), np.float32), 0.25, (0.0, 0.0), 0.0)
-    )

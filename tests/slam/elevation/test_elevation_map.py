@@ -52,3 +52,11 @@ def test_it_goes_on_with_a_map_that_was_drawn_before():
     resumed.resume(left)
     assert np.array_equal(resumed.elevation().ground, left.ground, equal_nan=True)
     assert np.array_equal(resumed.elevation().top, left.top, equal_nan=True)
+
+
+@pytest.mark.parametrize("beyond", [(0.0, 1600.0), (1600.0, 0.0), (600.0, 600.0)])
+def test_it_does_not_grow_beyond_what_a_message_may_hold(beyond):
+    heights = drawn((0.0, 0.0, 0.0), resolution=0.25)
+    with pytest.raises(MapFull, match="6200 along a side"):
+        heights.insert(np.array([(*beyond, 0.0)]))
+    assert heights.elevation().ground.shape == (1, 1)

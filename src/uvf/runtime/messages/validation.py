@@ -36,9 +36,8 @@ def error_in(message: Message) -> str:
 
 
 def _error_in_grid(grid: Grid) -> str:
-    """Cells in whole rows, as ``occupancy_cells`` and ``heights_of`` read them."""
-    (low, high), columns = GRID_CELL, grid.column_count
-    count = len(grid.data) // max(grid.cell_stride, 1)  # asked once: the cells are copied for it
+    """Cells of one byte in whole rows, as ``occupancy_cells`` reads them."""
+    (low, high), columns, count = GRID_CELL, grid.column_count, len(grid.data)  # asked once: the cells are copied for it
     if not (low <= grid.cell_size.x <= high and low <= grid.cell_size.y <= high):
         return f"cell_size: cells are of {low:g} to {high:g} m"
     if columns == 0 or count == 0 or count % columns:

@@ -16,14 +16,14 @@ Singles = NDArray[np.float32]
 Counts = NDArray[np.int32]
 
 GROW = 64  # columns that the map grows by, so that it seldom does
-MOST_COLUMNS = 4_000_000
-"""32 MB of heights."""
+MOST_COLUMNS, LONGEST = 3_900_000, 6_200
+"""Of a map that still goes into one message and into a log: 31 MB of heights, and so many columns along a side."""
 FORGETS = 50
 """Points that a mean is made of: later ones weigh no less than 1 / this. A surface beyond the gate, once hit, stays."""
 
 
 class MapFull(ValueError):
-    """The map would have more than ``MOST_COLUMNS`` columns."""
+    """The map would have more than ``MOST_COLUMNS`` columns, or more than ``LONGEST`` along a side."""
 
 
 @dataclass(frozen=True)
@@ -96,8 +96,8 @@ class ElevationMap:
                 return
         low, high = low // GROW * GROW, -(-high // GROW) * GROW
         columns, rows = (high - low).tolist()
-        if rows * columns > MOST_COLUMNS:
-            raise MapFull(f"the map would have {rows} x {columns} columns; {MOST_COLUMNS} are possible")
+        if rows * columns > MOST_COLUMNS or max(rows, columns) > LONGEST:
+            raise MapFull(f"the map would have {rows} x {columns} columns; {MOST_COLUMNS} are possible, {LONGEST} along a side")
         heights, counts = np.zeros((rows, columns, 2)), np.zeros((rows, columns, 2), dtype=np.int32)
         if size.all():
             column, row = self._low - low

@@ -13,9 +13,12 @@ from uvf.maths.rotations import from_euler
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.sensors import Lidar, Mount
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.log.bounds import PAYLOAD_MOST
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.messages.frames import FrameBuffer
-from uvf.runtime.messages.height_grids import heights_of
+from uvf.runtime.messages.height_grids import heights_message, heights_of
+from uvf.runtime.messages.validation import error_in
+from uvf.slam.elevation.elevation_map import LONGEST, MOST_COLUMNS
 
 LIDAR = Lidar(Mount(), hz=5, beams=91, angle_min=-0.785, angle_increment=0.01745, range_min=0.1, range_max=30.0)
 HEIGHT = 20.0  # m
@@ -115,3 +118,10 @@ def test_only_missions_with_a_vehicle_that_asks_for_it_have_the_process(tmp_path
     for model, has in (("milvus_surveyor", True), ("milvus", False)):
         path.write_text(MISSION.replace("MODEL", model).replace("PARAMS", "{}"))
         assert ("elevation" in [kind.name for kind in catalogue.needed(load_scenario(path, ROOT))]) is has
+
+
+@pytest.mark.parametrize("size", [(LONGEST, 4), (4, LONGEST), (1950, 2000)])
+def test_the_largest_map_is_a_message_that_others_take_and_the_log_holds(size):
+    message = heights_message(np.zeros(size, dtype=np.float32), np.zeros(size, dtype=np.float32), 0.25, (0.0, 0.0), 1.0)
+    assert error_in(message) == "" and size[0] * size[1] <= MOST_COLUMNS
+    assert message.ByteSize() <= PAYLOAD_MOST
