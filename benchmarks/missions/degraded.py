@@ -61,8 +61,8 @@ def measured(mission: str, vehicle: str, setting: str) -> tuple[dict[str, float]
     """The row of a mission with a fault, and what happened, in words."""
     with tempfile.TemporaryDirectory() as folder:
         path = changed_mission(ROOT / "missions" / f"{mission}.yaml", [setting.replace(WHO, vehicle)], Path(folder))
-        log = Path(folder) / "log-000.mcap"
-        result = run_lockstep(load_scenario(path), load_scenario(path).mission.duration, log, afterwards=AFTERWARDS)
+        site, log = load_scenario(path), Path(folder) / "log-000.mcap"
+        result = run_lockstep(site, site.mission.duration, log, afterwards=AFTERWARDS)
         with recorded_run(log) as run:
             wrong = [line for name, history in run.vehicles.items() for line in _wrong(name, history)]
             row = {"achieved": float(result.passed), "safe": float(not wrong), "ends": result.simulated, "off": _largest_error(run)}

@@ -9,13 +9,8 @@ from launch.scoring.last_words import event_text
 from schemas import topics
 from schemas.messages import Event
 from schemas.topics import SYSTEM
-from uvf.models.yaml_data import BadInput, nearest
-from uvf.runtime.bus.interface import matches
 from uvf.runtime.bus.wire import Malformed, decode_sample
-from uvf.runtime.log.folder import logs_of
-from uvf.runtime.log.reading import log_keys
-from uvf.runtime.log.run_samples import run_samples
-from uvf.runtime.messages.topic_lookup import full_key
+from uvf.runtime.log.run_samples import matching_keys, run_keys, run_samples
 from uvf.runtime.messages.validation import escaped
 
 EVENTS = (topics.EVENTS.by("*").at("*"), topics.SYSTEM_EVENTS.by("*").at(SYSTEM))
@@ -38,10 +33,5 @@ def event_lines(run: Path) -> Iterator[str]:
 
 def message_lines(run: Path, key: str, count: int) -> Iterator[str]:
     """Yields the text of each message that matches a key, at most ``count`` (0 = all), in order of time. Raises BadInput."""
-    wanted = full_key(key)
-    known = {name for log in logs_of(run) for name in log_keys(log)}
-    if not any(matches(wanted, name) for name in known):
-        short = sorted(name.removeprefix(f"{topics.PREFIX}/") for name in known)
-        raise BadInput(f"log {run}: no messages of '{key}'; {nearest(key, short)}")
-    for sample in islice(run_samples(run, (wanted,)), count or None):
+    for sample in islice(run_samples(run, matching_keys(run, key, run_keys(run))), count or None):
         yield sample_text(sample)

@@ -13,14 +13,12 @@ import typer
 from google.protobuf.message import DecodeError
 
 from launch.reports.foxglove import foxglove_layout
-from uvf.models.yaml_data import BadInput, nearest
-from uvf.runtime.bus.interface import matches
-from uvf.runtime.log.folder import logs_of
-from uvf.runtime.log.reading import log_keys
-from uvf.runtime.log.run_samples import run_samples
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.log.folder import run_folder
+from uvf.runtime.log.run_samples import matching_keys, run_keys, run_samples
 from uvf.runtime.messages.fields import Getter, columns_of
 from uvf.runtime.messages.step_times import NS
-from uvf.runtime.messages.topic_lookup import full_key, topic_of
+from uvf.runtime.messages.topic_lookup import topic_of
 
 Kind = Literal["csv", "parquet"]
 BATCH = 2000  # rows that are written at once
@@ -72,14 +70,9 @@ def _json_of(get: Getter) -> Getter:
 
 def export_log(run: Path, keys: Sequence[str], kind: Kind, out: Path | None) -> None:
     """Writes the topics that match ``keys`` (all, where none is given) into the folder ``out``, or beside the log. Raises BadInput."""
-    known = sorted({name for log in logs_of(run) for name in log_keys(log) if topic_of(name) is not None})
-    chosen = known
-    if keys:
-        for key in keys:
-            if not any(matches(full_key(key), name) for name in known):
-                raise BadInput(f"{run}: no messages of '{key}'; {nearest(key, (name.partition('/')[2] for name in known))}")
-        chosen = [name for name in known if any(matches(full_key(key), name) for key in keys)]
-    folder = out or (run if run.is_dir() else run.parent) / kind
+    known = [key for key in run_keys(run) if topic_of(key) is not None]
+    chosen = sorted({name for key in keys for name in matching_keys(run, key, known)}) if keys else known
+    folder = out or run_folder(run) / kind
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with ExitStack() as stack:
@@ -95,10 +88,9 @@ def export_log(run: Path, keys: Sequence[str], kind: Kind, out: Path | None) -> 
 
 def save_layout(run: Path, out: Path | None) -> None:
     """Writes the layout for Foxglove to ``out``, or beside the log. Raises BadInput."""
-    keys = sorted({key for log in logs_of(run) for key in log_keys(log)})
-    target = out or (run if run.is_dir() else run.parent) / "foxglove.json"
+    target = out or run_folder(run) / "foxglove.json"
     try:
-        target.write_text(json.dumps(foxglove_layout(keys), indent=2), encoding="utf-8")
+        target.write_text(json.dumps(foxglove_layout(run_keys(run)), indent=2), encoding="utf-8")
     except OSError as error:
         raise BadInput(f"{target}: {error.strerror}: choose another place with --out") from error
     typer.echo(f"{target}: open the log in Foxglove or Lichtblick, then import this layout")

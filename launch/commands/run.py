@@ -82,12 +82,17 @@ def _progress(title: str, total: float, unit: str = "s") -> Iterator[tuple[Progr
         yield bar, lambda done: bar.update(task, completed=done)
 
 
+def shown(text: str) -> str:
+    """Text of a log or a mission as a cell of a table on the terminal: neither control characters nor markup are obeyed."""
+    return escape(escaped(text))
+
+
 def criteria_table(verdicts: Sequence[Verdict]) -> Table:
     """The criteria of a mission with what was measured."""
     table = Table("subject", "measure", "value", "limit", "", "decided by")
     for verdict in verdicts:
-        row = (escaped(verdict.subject), verdict.criterion.measure, f"{verdict.found.value:.3g}", verdict.limits)
-        table.add_row(*row, "passed" if verdict.passed else "FAILED", escape(escaped(verdict.found.circumstances)))
+        row = (shown(verdict.subject), verdict.criterion.measure, f"{verdict.found.value:.3g}", verdict.limits)
+        table.add_row(*row, "passed" if verdict.passed else "FAILED", shown(verdict.found.circumstances))
     return table
 
 

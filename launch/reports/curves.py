@@ -11,13 +11,10 @@ from numpy.typing import NDArray
 
 from launch.reports.axes import finish, line
 from uvf.models.yaml_data import BadInput, nearest
-from uvf.runtime.bus.interface import matches
-from uvf.runtime.log.folder import logs_of
-from uvf.runtime.log.reading import log_keys
-from uvf.runtime.log.run_samples import run_samples
+from uvf.runtime.log.run_samples import matching_keys, run_keys, run_samples
 from uvf.runtime.messages.fields import Getter, number_of
 from uvf.runtime.messages.step_times import NS
-from uvf.runtime.messages.topic_lookup import full_key, topic_of
+from uvf.runtime.messages.topic_lookup import topic_of
 
 Floats = NDArray[np.float64]
 KINDS = ("png", "svg", "pdf")
@@ -27,7 +24,7 @@ Curves = dict[str, tuple[Floats, Floats]]
 
 def curves_of(run: Path, fields: Sequence[str]) -> list[Curves]:
     """The curves of each ``key.field`` as ``burger/nav/pose.pose.position.x``; a ``*`` in the key is any vehicle. Raises BadInput."""
-    known = sorted({name for log in logs_of(run) for name in log_keys(log)})
+    known = run_keys(run)
     readers = [_readers(run, field, known) for field in fields]
     points: list[dict[str, list[tuple[float, float]]]] = [{key: [] for key in of} for of in readers]
     for sample in run_samples(run, sorted({key for of in readers for key in of})):
@@ -47,11 +44,8 @@ def _readers(run: Path, wanted: str, known: Sequence[str]) -> dict[str, Getter]:
     key, dot, path = wanted.partition(".")
     if not dot:
         raise BadInput(f"'{wanted}': no field is named; write KEY.FIELD, as burger/nav/pose.pose.position.x")
-    chosen = [name for name in known if matches(full_key(key), name)]
-    if not chosen:
-        raise BadInput(f"{run}: no messages of '{key}'; {nearest(key, (name.partition('/')[2] for name in known))}")
     readers = {}
-    for name in chosen:
+    for name in matching_keys(run, key, known):
         topic = topic_of(name)
         if topic is None:
             raise BadInput(f"'{name}' is no topic of the table: its fields are not known")

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from launch.reports.axes import ESTIMATE, FIFTH, FOURTH, MOST_POINTS, TRUTH, WANTED, figure_table, finish, line
 from launch.reports.drive_figures import accelerations, drive_figures, forward_speed, pose_errors, touches, turn_rate
 from launch.reports.history import History
-from launch.reports.strip import draw_modes, mark
+from launch.reports.strip import draw_modes, draw_panels
 from launch.scoring.ground_measures import GOALS
 from schemas.messages import NavStatus
 from uvf.maths.se2 import transform
@@ -43,13 +43,7 @@ def draw_drive(history: History, grid: GridMap | None, target: Path) -> None:
     draw_modes(strip, history)
     _states(sheet.add_subplot(rows[3, :], sharex=strip), history)
     panels = (_speed, _turning, _acceleration, _distance_left, _pose_error, _yaw_error, _recoveries, _charge)
-    for i, panel in enumerate(panels):
-        axes = sheet.add_subplot(rows[4 + i % 4, i // 4])
-        axes.set_xlim(strip.get_xlim())
-        panel(axes, history)
-        mark(axes, history)
-        if i % 4 == 3:
-            axes.set_xlabel("s")
+    draw_panels(strip, rows, panels, history)
     sheet.savefig(target, dpi=90)
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from launch.reports.axes import ESTIMATE, FIFTH, FOURTH, MOST_POINTS, TRUTH, WANTED, cyclic, figure_table, finish, line
 from launch.reports.flight_figures import NEAR, WATT_HOUR, deviation, energy, figures
 from launch.reports.history import FlownMotion, History
-from launch.reports.strip import draw_modes, mark
+from launch.reports.strip import draw_modes, draw_panels
 from schemas.messages import MissionItem
 
 Floats = NDArray[np.float64]
@@ -29,13 +29,7 @@ def draw(history: History, target: Path) -> None:
     strip = sheet.add_subplot(grid[2, :])
     draw_modes(strip, history)
     panels = (_cross_track, _altitude, _airspeed, _wind, _attitude, _heading, _surfaces, _energy)
-    for i, panel in enumerate(panels):
-        axes = sheet.add_subplot(grid[3 + i % 4, i // 4])
-        axes.set_xlim(strip.get_xlim())
-        panel(axes, history)
-        mark(axes, history)
-        if i % 4 == 3:
-            axes.set_xlabel("s")
+    draw_panels(strip, grid, panels, history)
     sheet.savefig(target, dpi=90)
 
 

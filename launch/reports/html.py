@@ -12,7 +12,6 @@ STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #1d2430; background: #fff; }
 body { margin: 0 auto; padding: 1.5rem 2rem 4rem; max-width: 1320px; }
 h1 { font-size: 1.7rem; margin: 0 0 .2rem; } h2 { font-size: 1.25rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid #d9dde5; }
-h3 { font-size: 1.05rem; margin: 1.4rem 0 .4rem; }
 nav { display: flex; flex-wrap: wrap; gap: .3rem 1rem; margin: .8rem 0 0; } a { color: #1559b5; }
 table { border-collapse: collapse; font-size: .88rem; } .wide { overflow-x: auto; }
 th, td { text-align: left; padding: .22rem .8rem .22rem 0; border-bottom: 1px solid #e7eaf0; vertical-align: top; }

@@ -70,21 +70,21 @@ class RecordedRun:
         """Stores a message. Raises Malformed."""
         self.traffic.heard(sample)
         self.end = max(self.end, sample.stamp_ns / NS)
-        _, owner, *rest = [*sample.key.split("/", 2), ""][:3]
+        _, owner, name = [*sample.key.split("/", 2), "", ""][:3]
         if topic_of(sample.key) is None or not re.fullmatch(VEHICLE, owner):
             return
         if owner != SYSTEM:
             history = self.vehicles.get(owner) or History(owner)
-            history.heard(rest[0], sample)
+            history.heard(name, sample)
             self.vehicles[owner] = history
-            if rest[0] in _TOLD or rest[0].startswith("state/events/"):
+            if name in _TOLD or name.startswith("state/events/"):
                 self.told.heard(sample)
         elif sample.key == topics.TASKS.at(SYSTEM):
             self.tasks = list(decode_sample(sample, Tasks).tasks)
             for i, task in enumerate(self.tasks):
                 if task.state == TaskStatus.RUNNING:
                     self.begun.setdefault(i, task.since)
-        if rest[0].startswith("state/events/"):
+        if name.startswith("state/events/"):
             event = ReportedEvent(sample.stamp_ns / NS, "system" if owner == SYSTEM else owner, decode_sample(sample, Event))
             self.events.append(event)
         if scorer is not None:

@@ -1,5 +1,6 @@
 """Modes and events over time: the strip above a page's plots, and what is marked in each of them."""
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -7,6 +8,9 @@ import numpy as np
 from launch.reports.history import History
 from schemas.messages import Event
 from uvf.runtime.messages.convert import mode_name
+
+Panel = Callable[[Any, History], None]
+"""Draws one plot of a vehicle's history into axes."""
 
 BANDS = ("#f3f3f7", "#e2ebf6")  # behind one mode and the next
 MOST_NAMED = 12  # events written out
@@ -39,7 +43,19 @@ def draw_modes(axes: Any, history: History) -> None:
     axes.set_title("modes and events", fontsize=10, loc="left")
 
 
-def mark(axes: Any, history: History) -> None:
+def draw_panels(strip: Any, grid: Any, panels: Sequence[Panel], history: History) -> None:
+    """Draws the panels into the lowest rows of the page's grid of two columns, over the strip's time and with its marks."""
+    rows = len(panels) // 2
+    for i, panel in enumerate(panels):
+        axes = strip.figure.add_subplot(grid[grid.nrows - rows + i % rows, i // rows])
+        axes.set_xlim(strip.get_xlim())
+        panel(axes, history)
+        _mark(axes, history)
+        if i % rows == rows - 1:
+            axes.set_xlabel("s")
+
+
+def _mark(axes: Any, history: History) -> None:
     """Draws the modes behind it, items reached as ticks below, events as lines."""
     for i, (a, b, _) in enumerate(_stretches(history)):
         axes.axvspan(a, b, color=BANDS[i % 2], lw=0, zorder=-2)

@@ -15,6 +15,11 @@ def log_folder(environment: Mapping[str, str] = os.environ) -> Path | None:
     return Path(text) if text else None
 
 
+def run_folder(run: Path) -> Path:
+    """The folder of a run that is named by its folder or by one of its logs."""
+    return run if run.is_dir() else run.parent
+
+
 def logs_of(run: Path) -> list[Path]:
     """The files of a run's folder in their order, or the one log that is named. Raises BadInput."""
     if not run.is_dir():

@@ -5,11 +5,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from schemas.topics import PREFIX
-from uvf.models.yaml_data import BadInput
+from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.interface import Sample, matches
 from uvf.runtime.log.folder import logs_of
 from uvf.runtime.log.reading import log_keys, log_metadata, read_log
 from uvf.runtime.log.recovery import recover
+from uvf.runtime.messages.topic_lookup import full_key
 
 EVERYTHING = (f"{PREFIX}/**",)
 
@@ -26,6 +27,19 @@ def run_samples(run: Path, expressions: Sequence[str] = EVERYTHING) -> Iterator[
             if last.get(sample.key) != number:
                 yield sample
             last[sample.key] = number
+
+
+def run_keys(run: Path) -> list[str]:
+    """The keys that the files of a run have messages of, sorted. Raises BadInput for a file that is not a whole log."""
+    return sorted({key for log in logs_of(run) for key in log_keys(log)})
+
+
+def matching_keys(run: Path, wanted: str, known: Sequence[str]) -> list[str]:
+    """Those of the keys ``known`` of a run that match ``wanted``, as people write it. Raises BadInput where none does."""
+    found = [key for key in known if matches(full_key(wanted), key)]
+    if not found:
+        raise BadInput(f"log {run}: no messages of '{wanted}'; {nearest(wanted, (key.removeprefix(f'{PREFIX}/') for key in known))}")
+    return found
 
 
 def _samples(log: Path, expressions: Sequence[str]) -> Iterator[Sample]:

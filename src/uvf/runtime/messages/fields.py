@@ -3,15 +3,15 @@
 import json
 import re
 from collections.abc import Callable
-from math import asin, atan2
 from typing import Any
 
 from google.protobuf.descriptor import FieldDescriptor
 from google.protobuf.json_format import MessageToDict
 
 from schemas.messages import Quaternion, Timestamp
+from uvf.maths.rotations import to_euler
 from uvf.models.yaml_data import BadInput, nearest
-from uvf.runtime.messages.convert import seconds
+from uvf.runtime.messages.convert import seconds, wxyz
 from uvf.runtime.messages.validation import is_repeated
 
 Descriptor = Any  # the stubs have two of them, of which a message type has the other one
@@ -21,12 +21,8 @@ NUMBERS = {
     *(FieldDescriptor.CPPTYPE_DOUBLE, FieldDescriptor.CPPTYPE_FLOAT, FieldDescriptor.CPPTYPE_BOOL, FieldDescriptor.CPPTYPE_ENUM),
     *(FieldDescriptor.CPPTYPE_INT32, FieldDescriptor.CPPTYPE_INT64, FieldDescriptor.CPPTYPE_UINT32, FieldDescriptor.CPPTYPE_UINT64),
 }
-ANGLES: dict[str, Callable[[Any], float]] = {
-    "roll": lambda q: atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y)),
-    "pitch": lambda q: asin(max(-1.0, min(1.0, 2 * (q.w * q.y - q.z * q.x)))),
-    "yaw": lambda q: atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)),
-}
-"""Of a quaternion, rotations about z, then y, then x [rad], besides its w, x, y and z."""
+ANGLES = ("roll", "pitch", "yaw")
+"""Of a quaternion [rad], besides its w, x, y and z."""
 
 
 def number_of(message: Descriptor, path: str) -> Callable[[Any], float | None]:
@@ -39,7 +35,7 @@ def number_of(message: Descriptor, path: str) -> Callable[[Any], float | None]:
             raise BadInput(f"{whole}: '{part}' is no field; write as pose.position.x, or ranges[10] for an element of a list")
         name, index, last = match[1], match[2], i + 1 == len(parts)
         if here is Quaternion.DESCRIPTOR and name in ANGLES and index is None and last:
-            return _composed([*steps, ANGLES[name]])
+            return _composed([*steps, _angle(ANGLES.index(name))])
         field = here.fields_by_name.get(name)
         if field is None:
             raise BadInput(f"{whole}: {here.full_name} has no field '{name}'; {nearest(name, _names(here))}")
@@ -131,6 +127,10 @@ def _element(name: str, index: int) -> Getter:
 
 def _listed(name: str) -> Getter:
     return lambda message: list(getattr(message, name))
+
+
+def _angle(which: int) -> Getter:
+    return lambda quaternion: to_euler(wxyz(quaternion))[which]
 
 
 def _composed(steps: list[Getter]) -> Getter:
