@@ -41,6 +41,7 @@ def pose_errors(history: History) -> tuple[Floats, Floats, Floats]:
     rows, truth = history.rows("nav/pose"), history.truth
     if truth is None or not len(rows):
         return np.zeros(0), np.zeros(0), np.zeros(0)
+    rows = rows[(rows[:, 0] >= truth.t[0]) & (rows[:, 0] <= truth.t[-1])]  # beyond them the truth is not known
     true = truth.at(rows[:, 0])
     off = np.hypot(rows[:, 1] - true.position[:, 0], rows[:, 2] - true.position[:, 1])
     yaw = np.array([wrap(angle) for angle in rows[:, 3] - (np.pi / 2 - true.heading)])

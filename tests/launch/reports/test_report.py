@@ -138,6 +138,12 @@ def test_the_figures_are_those_of_the_drive(tmp_path):
     assert touches(rover) == pytest.approx([7.0, 19.0]) and pose_errors(rover)[2] == pytest.approx(0.1)
 
 
+def test_poses_after_the_last_truth_have_no_error(tmp_path):
+    later = [(topics.POSE, PoseInFrame(frame_id="world", pose=planar_pose(50.0, 0.0, 3.0)), t) for t in (20.1, 20.3)]
+    with recorded_run(written(tmp_path / "log.mcap", [*drive(), *later])) as recorded:
+        assert pose_errors(recorded.vehicles["rover"])[1] == pytest.approx(0.3)
+
+
 def test_what_strangers_have_written_is_shown_as_text(tmp_path):
     refused = Event(text="\x1b[2J what no service takes, no report tells")
     written(tmp_path / "log-000.mcap", [*drive("<script>alert(1)</script>&amp;"), (topics.EVENTS.by("planner"), refused, 19.95)])
