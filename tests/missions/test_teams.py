@@ -9,7 +9,7 @@ from uvf.models.scenario import ROOT, load_scenario
 pytestmark = pytest.mark.timeout(600)
 
 
-@pytest.mark.parametrize("name", ["uav2_dubins", "leader_follower", "convoy", "ugv3_explore"])
+@pytest.mark.parametrize("name", ["uav2_dubins", "leader_follower", "airship", "convoy", "ugv3_explore"])
 def test_vehicles_and_teams_do_their_missions(name, tmp_path, monkeypatch):
     monkeypatch.setenv("UVF_STATE", str(tmp_path / "state"))
     site = load_scenario(ROOT / "missions" / f"{name}.yaml")

@@ -5,6 +5,7 @@ Either level may be asked. Changing from the lower to the upper, or from law to 
 
 from typing import Protocol
 
+from uvf.control.airship import AirshipAttitude, AirshipPath
 from uvf.control.attitude_loops import AttitudeLoops
 from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.cycle import Cycle
@@ -40,8 +41,12 @@ class FlightControl:
     """Inner and outer loops of the control law chosen by ``params.law``, with their integrators."""
 
     def __init__(self, servos: Servos) -> None:
-        self._inner: dict[str, AttitudeLaw] = {"energy": AttitudeLoops(servos), "thesis": ThesisAttitude(servos)}
-        self._outer: dict[str, PathLaw] = {"energy": EnergyLoops(), "thesis": ThesisPath()}
+        self._inner: dict[str, AttitudeLaw] = {
+            "energy": AttitudeLoops(servos),
+            "airship": AirshipAttitude(servos),
+            "thesis": ThesisAttitude(servos),
+        }
+        self._outer: dict[str, PathLaw] = {"energy": EnergyLoops(), "airship": AirshipPath(), "thesis": ThesisPath()}
         self._flown = ""  # the law of the upper level in the last cycle; none when an attitude was held
         self._held: AttitudeSetpoint | None = None
 

@@ -43,11 +43,14 @@ class AirParams(FailsafeParams, frozen=True):
     pitch_i: Annotated[float, _meta(0, 2, "", "elevator per integrated error of pitch rate")] = 0.2
     yaw_damping: Annotated[float, _meta(0, 1, "s", "rudder per yaw rate beyond that of a coordinated turn")] = 0.15
     slip_i: Annotated[float, _meta(0, 1, "rad s/m", "rudder per integrated side force")] = 0.01
+    turn_ff: Annotated[float, _meta(0, 10, "s", "airship: rudder per commanded turn rate")] = 0.5
+    turn_i: Annotated[float, _meta(0, 10, "", "airship: rudder per integrated error of turn rate")] = 0.2
 
     # altitude and airspeed
-    law: Annotated[Literal["energy", "thesis"], Meta(description="energy: total energy and rate loops; thesis: its loops and gains")] = (
-        "energy"
-    )
+    law: Annotated[
+        Literal["energy", "airship", "thesis"],
+        Meta(description="energy: total energy and rate loops; airship: turns by its rudder; thesis: its loops and gains"),
+    ] = "energy"
     altitude_p: Annotated[float, _meta(0, 2, "1/s", "climb rate per error of altitude")] = 0.5
     climb_p: Annotated[float, _meta(0, 2, "", "pitch per error of climb angle")] = 1.0
     climb_i: Annotated[float, _meta(0, 1, "1/s", "pitch per integrated error of climb angle")] = 0.6
