@@ -141,9 +141,8 @@ def _rates(models: LinearModels, body: AirBody) -> dict[str, float]:
     for axis, (side, rate, surface, quickest) in sides.items():
         damping, power = abs(side.slope(rate, rate)), abs(side.slope(rate, surface))
         if power < 1e-6 * damping:
-            raise BadInput(
-                f"{body.model}: nothing that the autopilot moves makes it {axis}: the figures are worked out for an aeroplane, which banks to turn; an airship's are set by hand, with law: airship"
-            )
+            why = f"{body.model}: nothing that the autopilot moves makes it {axis}"
+            raise BadInput(f"{why}: these figures are an aeroplane's, which banks; those of an airship are set by hand, with law: airship")
         ahead = damping / power
         found[f"{axis}_time"] = _within(RESPONSE / damping, quickest, 2.0)
         found[f"{axis}_ff"] = _within(ahead, 0.0, 2.0)

@@ -57,11 +57,9 @@ def test_throttle_learns_the_drag_and_does_not_wind_up_at_its_stop():
     for _ in range(5000):
         _, throttle = law.step(flying(airspeed=5.0), path(airspeed=7.0))  # a headwind that never ends
     assert throttle == 1.0
-    for k in range(400):
+    for _ in range(200):
         _, throttle = law.step(flying(airspeed=8.0), path(airspeed=7.0))
-        if throttle < PARAMS.trim_throttle:
-            break
-    assert k * DT < 4.0
+    assert throttle < PARAMS.trim_throttle
 
 
 def test_a_throttle_that_is_given_is_kept():
