@@ -35,6 +35,7 @@ KINDS = (
     Kind("slam", "services.slam.build", "odometry, mapping, localization", "ground", nice=3),
     Kind("octree", "services.slam.octree.build", "3-D maps of the vehicles that ask for one", "asked", nice=12),
     Kind("elevation", "services.slam.elevation.build", "heights of the ground below the aircraft that ask for them", "asked", nice=10),
+    Kind("detector", "services.detector.build", "coloured markers in the pictures of the vehicles that ask for it", "asked", nice=8),
     Kind("merging", "services.slam.merging.build", "one map of those who map the same place", "team", nice=12),
     Kind("planner", "services.planner.build", "exploration, paths, tracking", "ground", nice=2),
     Kind("autopilot", "services.autopilot.build", "command multiplexer, estimator, guidance, control, modes", nice=2),

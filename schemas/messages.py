@@ -33,6 +33,7 @@ from schemas.v1.command_pb2 import (
     SurfaceCommand,
     WheelCommand,
 )
+from schemas.v1.detection_pb2 import Detection, Detections
 from schemas.v1.fence_pb2 import Fence, FenceRequest, FenceZone
 from schemas.v1.link_pb2 import Link
 from schemas.v1.map_pb2 import MapFix, MappingRequest, MapReply, MapRequest, MapSession, PlaceRequest, RelocalizeRequest, SaveMapRequest
@@ -109,6 +110,8 @@ __all__ = [
     "CompressedImage",
     "Contact",
     "CourseSetpoint",
+    "Detection",
+    "Detections",
     "Done",
     "DriveCommand",
     "EstimateQuality",

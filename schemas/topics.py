@@ -161,6 +161,7 @@ NAV_STATUS = Topic(f"{_V}/nav/status", m.NavStatus, 2, _Q.STATE, "what the plann
 NAV_DIRECTIVE = Topic(f"{_V}/nav/directive", m.NavDirective, 4, _Q.STATE, "what the tracker is to do: follow the path, or recover")
 NAV_REPORT = Topic(f"{_V}/nav/report", m.NavReport, 10, _Q.STATE, "how the tracker fares with it")
 OBSTACLES = Topic(f"{_V}/nav/obstacles", m.MovingObstacles, 5, _Q.STATE, "what moves around the vehicle, as its tracker follows it")
+DETECTIONS = Topic(f"{_V}/nav/detections", m.Detections, 0, _Q.LATCHED, "markers that the vehicle has seen with its camera", kept=True)
 PARTICLES = Topic(f"{_V}/nav/particles", m.PosesInFrame, 5, _Q.STATE, "some of the particles that localize the vehicle, map frame")
 MAP_POSE = Topic(
     f"{_V}/nav/map_pose", m.MapFix, 5, _Q.STATE, "where the newest scan places the vehicle in its map, and how surely", kept=True

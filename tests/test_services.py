@@ -17,10 +17,11 @@ from uvf.runtime.state.stop_all import StopStatus
 SITE = load_scenario(ROOT / "missions" / "demo.yaml")
 ASKING = load_scenario(ROOT / "missions" / "mapping.yaml")
 FROM_ABOVE = load_scenario(ROOT / "missions" / "air_ground.yaml")
+SEARCH = load_scenario(ROOT / "missions" / "search.yaml")
 TEAM = load_scenario(ROOT / "missions" / "team.yaml")
 TASKS = load_scenario(ROOT / "missions" / "ugv2_slam.yaml")
 PROGRAM = load_scenario(ROOT / "missions" / "ugv1_waypoints.yaml")
-SITES = {"asked": ASKING, "team": TEAM, "tasks": TASKS, "program": PROGRAM, "elevation": FROM_ABOVE}
+SITES = {"asked": ASKING, "team": TEAM, "tasks": TASKS, "program": PROGRAM, "elevation": FROM_ABOVE, "detector": SEARCH}
 HOSTS = {kind.name: catalogue.hosts(SITES.get(kind.name, SITES.get(kind.needs, SITE)), [kind]) for kind in catalogue.KINDS}
 SERVICES = sorted({host.service for hosts in HOSTS.values() for host in hosts}, key=lambda s: s.name)
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from launch.docs.tables import table
 from services.autopilot.ground.params import GroundAutopilotParams
+from services.detector.detector_service import DetectorParams
 from services.planner.params import PlannerParams
 from services.planner.tracker_service import TrackerParams
 from services.slam.elevation.elevation_service import ElevationParams
@@ -28,6 +29,7 @@ SERVICES: dict[str, tuple[type[Params], str]] = {
     "localization": (FilterParams, "Pose of a ground vehicle on a known map."),
     "octree": (OctreeParams, "3-D map; a vehicle that has this block gets one."),
     "elevation": (ElevationParams, "Heights of the ground below an aircraft; one that has this block maps them."),
+    "detector": (DetectorParams, "Coloured markers in the pictures of a vehicle's camera; one that has this block looks for them."),
     "planner": (PlannerParams, "Exploration and paths of a ground vehicle."),
     "tracker": (TrackerParams, "Follows the path."),
     "autopilot_ground": (GroundAutopilotParams, "Modes and failsafes of a ground vehicle."),

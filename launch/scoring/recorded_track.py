@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from launch.scoring.finding import Place
 from schemas import topics
-from schemas.messages import Contact, Event, Grid, Mission, MissionProgress, NavState, NavStatus, PoseInFrame
+from schemas.messages import Contact, Detections, Event, Grid, Mission, MissionProgress, NavState, NavStatus, PoseInFrame
 from uvf.models.scenario import Scenario
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.messages.convert import wxyz
@@ -41,6 +41,7 @@ class RecordedTrack:
     felt: bool = False
     grid: Grid | None = None
     heights: bytes | None = None  # the last map of heights, as it came: it is large
+    detections: Detections | None = None
     mission: Mission | None = None
     team: "dict[str, RecordedTrack]" = field(default_factory=dict)  # all of the run, this one included
 
@@ -72,6 +73,9 @@ class RecordedTrack:
 
     def _keep_heights(self, t: float, payload: bytes) -> None:
         self.heights = payload
+
+    def _keep_detections(self, t: float, payload: bytes) -> None:
+        self.detections = Detections.FromString(payload)
 
     def _keep_mission(self, t: float, payload: bytes) -> None:
         self.mission = Mission.FromString(payload)
@@ -120,6 +124,7 @@ _KEPT: dict[str, Callable[[RecordedTrack, float, bytes], None]] = {
     "sensor/contact": RecordedTrack._keep_contact,
     "map/grid": RecordedTrack._keep_grid,
     "map/heights": RecordedTrack._keep_heights,
+    "nav/detections": RecordedTrack._keep_detections,
     "mission/plan": RecordedTrack._keep_mission,
     "mission/progress": RecordedTrack._keep_progress,
     "state/events": RecordedTrack._keep_event,
@@ -131,6 +136,7 @@ RECORDED = (
     topics.CONTACT,
     topics.MAP,
     topics.HEIGHTS,
+    topics.DETECTIONS,
     topics.MISSION,
     topics.PROGRESS,
     topics.EVENTS.by("*"),

@@ -14,6 +14,7 @@ from launch.scoring.finding import Finding
 from launch.scoring.flight_measures import separation, spacing_error, speed_at_end, station_error, touchdown_error, touchdown_sink
 from launch.scoring.ground_measures import contacts, crashed, distance_driven, goal_time, pose_error, pose_error_rms
 from launch.scoring.map_measures import height_error, map_f1, mapped_floor
+from launch.scoring.marker_measures import marker_error, markers_found, markers_reached
 from launch.scoring.path_measures import altitude_error, circuits, course_error, legs, path_error, waypoint_error
 from launch.scoring.recorded_track import RECORDED, RecordedTrack
 from launch.scoring.route_measures import cross_track_error, waypoints_missed_by
@@ -30,8 +31,9 @@ Floats = NDArray[np.float64]
 
 _OF_ALL = (distance_driven, contacts, crashed, pose_error, pose_error_rms, mapped_floor, map_f1, height_error, goal_time)
 _OF_MISSIONS = (circuits, legs, path_error, altitude_error, waypoint_error, course_error, waypoints_missed_by, cross_track_error)
+_OF_SEARCHES = (markers_found, marker_error, markers_reached)
 _OF_FLIGHTS = (separation, spacing_error, station_error, touchdown_sink, touchdown_error, speed_at_end)
-MEASURES: dict[str, Callable[[RecordedTrack], Finding]] = {f.__name__: f for f in (*_OF_ALL, *_OF_MISSIONS, *_OF_FLIGHTS)}
+MEASURES: dict[str, Callable[[RecordedTrack], Finding]] = {f.__name__: f for f in (*_OF_ALL, *_OF_MISSIONS, *_OF_SEARCHES, *_OF_FLIGHTS)}
 
 
 def check_criteria(site: Scenario) -> None:

@@ -14,6 +14,10 @@ def unfulfilled(condition: TaskCondition, now: TeamSituation, since: float) -> s
     for holds, text in _about_time(condition, now, since):
         if not holds:
             return text
+    if condition.found is not None and condition.vehicle is not None:
+        vehicles = now.vehicles(condition.vehicle)
+        if len(now.found(vehicles)) < condition.found:
+            return f"{' and '.join(vehicles)} have found {condition.found} markers"
     checks = list(_about_vehicles(condition))
     if condition.vehicle is None or not checks:
         return ""

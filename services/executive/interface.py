@@ -4,6 +4,7 @@ from schemas import topics
 from schemas.messages import (
     ArmRequest,
     CancelRequest,
+    Detections,
     DriveCommand,
     Event,
     FollowRequest,
@@ -35,6 +36,7 @@ class Inputs(Reads):
     pose: dict[str, PoseInFrame] = each_vehicle(topics.POSE)
     status: dict[str, VehicleStatus] = each_vehicle(topics.STATUS)
     nav: dict[str, NavStatus] = each_vehicle(topics.NAV_STATUS)
+    detections: dict[str, Detections] = each_vehicle(topics.DETECTIONS)
     progress: dict[str, MissionProgress] = each_vehicle(topics.PROGRESS)
     told: dict[str, list[Event]] = each_vehicle(every(topics.EVENTS.by("planner")))
     arm: list[Answer[ArmRequest, Reply]] = answers(topics.ARM)

@@ -7,6 +7,7 @@ from py_trees.behaviour import Behaviour
 from schemas.messages import Mode, TaskStatus
 from services.executive.actions.action import ArmAction, ChangeModeAction, TaskAction
 from services.executive.actions.driving import FlyToAction, FollowAction, GoalAction, RouteAction
+from services.executive.actions.found_markers import VisitFoundAction
 from services.executive.actions.joystick import DriveAction, DriveTrack
 from services.executive.actions.maps import SaveMapAction, ShareMapAction
 from services.executive.actions.missions import ExploreAction, MissionAction
@@ -74,7 +75,10 @@ class Planter:
         if task.route is not None:
             return [RouteAction(name, task.route.places, task.route.kind) for name in who(task.route.vehicle)]
         if task.visit is not None:
-            return [VisitAction(who(task.visit.vehicle), task.visit.places)]
+            visit, vehicles = task.visit, who(task.visit.vehicle)
+            if visit.found is not None:
+                return [VisitFoundAction(vehicles, who(visit.found.by), visit.found.count, visit.found.near)]
+            return [VisitAction(vehicles, visit.places)]
         if task.follow is not None:
             return self._column(task.follow)
         return []

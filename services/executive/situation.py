@@ -1,6 +1,6 @@
 """What the tasks of a mission see in one step, and what they say."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import hypot
 
@@ -12,6 +12,8 @@ from uvf.models.mission.tasks import Who
 from uvf.models.scenario import MissionVehicle
 
 Point = tuple[float, float]
+
+SAME_MARKER = 1.5  # m, within which what two vehicles have found is one marker
 
 
 @dataclass
@@ -56,6 +58,16 @@ class TeamSituation:
         """Horizontal distance [m] of a vehicle from a point [m, world]; None without a fresh pose."""
         place = self.place(vehicle)
         return hypot(place[0] - point[0], place[1] - point[1]) if place is not None else None
+
+    def found(self, vehicles: Sequence[str]) -> list[Point]:
+        """Places (x, y) [m, world] of the markers that these vehicles have found together, each once, the surest estimate of it."""
+        told = [each for vehicle in vehicles if vehicle in self.now.detections for each in self.now.detections[vehicle].detections]
+        places: list[Point] = []
+        for each in sorted(told, key=lambda detection: detection.sigma):
+            place = (each.position.x, each.position.y)
+            if all(hypot(place[0] - x, place[1] - y) > SAME_MARKER for x, y in places):
+                places.append(place)
+        return places
 
     def is_armed(self, vehicle: str) -> bool:
         """Whether the vehicle's autopilot says that it is armed."""

@@ -12,6 +12,7 @@ from schemas.messages import (
     Clock,
     ClockRequest,
     CompressedImage,
+    Detections,
     DriveCommand,
     EstimateQuality,
     Event,
@@ -99,6 +100,7 @@ NEWEST = (
     "quality",
     "particles",
     "obstacles",
+    "detections",
     "costmap",
     "local_costs",
     "octree",
@@ -151,6 +153,7 @@ class GroundStation(Service):
         quality: dict[str, EstimateQuality] = each_vehicle(topics.QUALITY)
         particles: dict[str, PosesInFrame] = each_vehicle(topics.PARTICLES)
         obstacles: dict[str, MovingObstacles] = each_vehicle(topics.OBSTACLES)
+        detections: dict[str, Detections] = each_vehicle(topics.DETECTIONS)
         costmap: dict[str, Grid] = each_vehicle(topics.COSTMAP)
         local_costs: dict[str, Grid] = each_vehicle(topics.LOCAL_COSTS)
         octree: dict[str, OctreeMap] = each_vehicle(topics.OCTREE)

@@ -17,6 +17,7 @@ ROOTS = {
     "Tracks": ("/track",),
     "Labels": ("/label", "/height"),
     "Obstacles": ("/moving",),
+    "Markers": ("/marker",),
     "Uncertainty": ("/sigma", "/particles"),
     "Costmaps": ("/costmap", "/costs"),
     "Octree": ("/octree",),

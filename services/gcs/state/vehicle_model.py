@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from schemas.messages import (
     CompressedImage,
+    Detections,
     EstimateQuality,
     Fence,
     FrameTransform,
@@ -105,6 +106,7 @@ class VehicleModel:
     quality: EstimateQuality | None = None
     particles: PosesInFrame | None = None
     obstacles: MovingObstacles | None = None
+    detections: Detections | None = None
     costmap: Grid | None = None
     local_costs: Grid | None = None
     octree: OctreeMap | None = None

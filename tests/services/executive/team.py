@@ -3,6 +3,8 @@
 from pathlib import Path
 
 from schemas.messages import (
+    Detection,
+    Detections,
     Event,
     Grid,
     MapReply,
@@ -13,6 +15,7 @@ from schemas.messages import (
     PreviewReply,
     Reply,
     TaskStatus,
+    Vector3,
     VehicleStatus,
 )
 from services.executive.interface import Inputs
@@ -27,9 +30,9 @@ MISSION = """about: Two rovers and an aircraft.
 world: house
 duration: 10
 vehicles:
-  anne: {model: burger, system_id: 1, start: {x: 2.2, y: 1.3}, job: {explore: true, armed: false}}
+  anne: {model: my3bot, system_id: 1, start: {x: 2.2, y: 1.3}, job: {explore: true, armed: false}, params: {detector: {}}}
   bert: {model: burger, system_id: 2, start: {x: 8.0, y: 4.4}}
-  carl: {model: milvus, system_id: 3, start: {x: 0.0, y: -200.0, z: 60.0}}
+  carl: {model: milvus, system_id: 3, start: {x: 0.0, y: -200.0, z: 60.0}, params: {detector: {}}}
 roles: {team: [anne, bert]}
 """
 DT = 0.1
@@ -55,6 +58,7 @@ class Team:
         self.progress: dict[str, MissionProgress] = {}
         self.told: dict[str, list[Event]] = {}
         self.tasks = None
+        self.detections: dict[str, Detections] = {}
         self.map, self.shared = Grid(frame_id="world"), {}
         self._answers: dict[str, list[Answer]] = {}
 
@@ -65,7 +69,8 @@ class Team:
         for _ in range(n):
             self.t = round(self.t + DT, 6)
             pose = {name: PoseInFrame(pose=planar_pose(x, y, 0.0)) for name, (x, y) in self.places.items()}
-            now = Inputs(pose=pose, status=self.status, nav=self.nav, progress=self.progress, told=self.told, **self._answers)
+            heard = {"pose": pose, "status": self.status, "nav": self.nav, "progress": self.progress, "detections": self.detections}
+            now = Inputs(told=self.told, **heard, **self._answers)
             self.told, self._answers = {}, {}
             out = self.service.step(self.t, now)
             self.tasks = out.tasks or self.tasks
@@ -98,6 +103,11 @@ class Team:
             self.nav[vehicle] = NavStatus(job="waypoints", state=NavStatus.DRIVING, route=message)
         elif name == "follow":
             self.nav[vehicle] = NavStatus(job="follow", state=NavStatus.DRIVING, follow=message)
+
+    def find(self, vehicle: str, *places) -> None:
+        """The markers that the vehicle has found."""
+        told = [Detection(id=k, position=Vector3(x=x, y=y), sigma=0.2) for k, (x, y) in enumerate(places)]
+        self.detections[vehicle] = Detections(detections=told)
 
     def arrive(self, vehicle: str) -> None:
         self.nav[vehicle].state = NavStatus.REACHED

@@ -6,6 +6,8 @@ from numpy.typing import NDArray
 from services.gcs.state.vehicle_model import STALE_AFTER, VehicleModel
 from services.gcs.view.drawing import Axes, TextNode
 from services.gcs.view.scene.estimates import cloud, covariance_of, ellipse
+from services.gcs.view.scene.found_markers import MOST as MARKERS_MOST
+from services.gcs.view.scene.found_markers import ring_about
 from services.gcs.view.scene.frames import chained, fixed_frames
 from services.gcs.view.scene.levels import UP
 from services.gcs.view.scene.node_cache import Layers, NodeCache, Nodes
@@ -26,6 +28,7 @@ class EstimateLayers:
         return {
             "frame": ("Frames", lambda: self._frames(v)),
             "moving": ("Obstacles", lambda: self._obstacles(v, t)),
+            "marker": ("Markers", lambda: self._markers(v)),
             "sigma": ("Uncertainty", lambda: self._ellipse(v)),
             "particles": ("Uncertainty", lambda: self._particles(v)),
         }
@@ -65,6 +68,20 @@ class EstimateLayers:
             return {}
         told = list(enumerate(v.obstacles.obstacles[:OBSTACLES_MOST]))
         return self._nodes.make_all(f"moving {v.name}", v.obstacles, lambda: {f"/{i}": predicted(one, 5 * UP) for i, one in told})
+
+    def _markers(self, v: VehicleModel) -> Nodes:
+        if v.detections is None:
+            return {}
+        told = v.detections.detections[:MARKERS_MOST]
+
+        def draw() -> Nodes:
+            drawn: Nodes = {}
+            for each in told:
+                drawn[f"/{each.id}"] = ring_about(each)
+                drawn[f"/{each.id}/name"] = TextNode(f"{v.name} {each.id}", (each.position.x, each.position.y, each.position.z + 1.0))
+            return drawn
+
+        return self._nodes.make_all(f"marker {v.name}", v.detections, draw)
 
     def _ellipse(self, v: VehicleModel) -> Nodes:
         covariance = covariance_of(v.fix, v.quality, v.world_from_map) if v.place is not None else None

@@ -14,6 +14,7 @@ from uvf.models.mission.formation import Follow, check_follow
 from uvf.models.mission.task_check import check_tasks
 from uvf.models.mission.tasks import Task, walk
 from uvf.models.names import FOLDER, SYSTEM, VEHICLE
+from uvf.models.world.file import Colour, Positive
 from uvf.models.world.wind import Wind, check_wind
 from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
 
@@ -147,6 +148,16 @@ class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ] = None
 
 
+class MarkerFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A coloured post that vehicles look for. Only simulators and scores know where it stands."""
+
+    x: Annotated[Metres, key("m", "East of the world's origin.")]
+    y: Annotated[Metres, key("m", "North of the world's origin.")]
+    radius: Annotated[Positive, key("m", "Radius.")] = 0.3
+    height: Annotated[Positive, key("m", "Height above the ground there.")] = 1.0
+    colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")] = (1.0, 0.0, 0.85)
+
+
 class Criterion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One line of the score: a measured figure of a vehicle or a task and its limits; see ``launch.scoring.scores``."""
 
@@ -169,6 +180,7 @@ class MissionFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ]
     seed: Annotated[int, key("", "Seed of every random number of the run. Two lockstep runs with the same seed are equal to the byte.")] = 1
     duration: Annotated[float, Meta(gt=0, le=1e6), key("s", "Simulation time after which `uvf run` ends and scores.")] = 120.0
+    markers: Annotated[list[MarkerFile], Meta(max_length=200), plain("Coloured posts in the world that vehicles look for.")] = []
     roles: Annotated[dict[str, list[str]], plain("Vehicles by role: tasks name roles instead of vehicles, where several share one.")] = {}
     tasks: Annotated[
         list[Task],

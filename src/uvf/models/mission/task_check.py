@@ -1,6 +1,6 @@
 """Whether the tasks of a mission can be done by its vehicles: who, what, and in files that are there."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
 from uvf.models.mission.tasks import COMPOSITES, DEEPEST, MOST_TASKS, VERBS, Task, TaskCondition, Who, parts_of, verb_of, walk
@@ -8,7 +8,7 @@ from uvf.models.yaml_data import BadInput, FileLocation, nearest
 
 Roles = Mapping[str, list[str]]
 """Vehicles by role."""
-ABOUT_VEHICLES = ("reaches", "near", "item", "mode", "landed", "fails", "charge_below", "explored")
+ABOUT_VEHICLES = ("reaches", "near", "item", "mode", "landed", "fails", "charge_below", "explored", "found")
 
 
 def members_of(who: Who, roles: Roles) -> list[str]:
@@ -68,6 +68,8 @@ def _check_task(task: Task, place: FileLocation, folder: Path) -> None:
         raise BadInput(f"{place}: nobody follows to an end: say with until when it is done")
     if task.share_map is not None and (area := task.share_map.area) is not None and not (area[0] < area[2] and area[1] < area[3]):
         raise BadInput(f"{place.at('share_map', 'area')}: nothing lies in it; give [x_min, y_min, x_max, y_max]")
+    if task.visit is not None and bool(task.visit.places) is (task.visit.found is not None):
+        raise BadInput(f"{place.at('visit')}: give places, or found with the vehicles that find markers: one of the two")
     if task.drive is not None and not (folder / task.drive.track).is_file():
         raise BadInput(f"{place.at('drive', 'track')}: there is no file {folder / task.drive.track}")
 
@@ -81,6 +83,8 @@ def _named(task: Task, place: FileLocation) -> Iterator[tuple[Who, FileLocation]
     for part in ("vehicle", "leader", "to"):
         if (who := getattr(does, part, None)) is not None:
             yield who, place.at(verb, part)
+    if task.visit is not None and task.visit.found is not None:
+        yield task.visit.found.by, place.at("visit", "found", "by")
     for name, condition in (("when", task.when), ("until", task.until)):
         if condition is not None and condition.vehicle is not None:
             yield condition.vehicle, place.at(name, "vehicle")
@@ -108,6 +112,19 @@ def _check_condition(condition: TaskCondition, known: set[str], place: FileLocat
     for name in (condition.task, condition.failed):
         if name is not None and name not in known:
             raise BadInput(f"{place}: no task is called '{name}'; {nearest(name, known)}")
+
+
+def check_finders(tasks: list[Task], roles: Roles, seeing: Collection[str], file: FileLocation) -> None:
+    """Checks that who is to find markers looks for them; seeing: vehicles with a detector. Raises BadInput."""
+    for task, place in _placed(tasks, file.at("tasks")):
+        asked = [] if task.visit is None or task.visit.found is None else [(task.visit.found.by, place.at("visit", "found", "by"))]
+        for name, condition in (("when", task.when), ("until", task.until)):
+            if condition is not None and condition.found is not None and condition.vehicle is not None:
+                asked.append((condition.vehicle, place.at(name, "found")))
+        for who, where in asked:
+            for vehicle in members_of(who, roles):
+                if vehicle not in seeing:
+                    raise BadInput(f"{where}: {vehicle} looks for no markers; give it params: {{detector: {{}}}}, and a camera")
 
 
 def check_shares(tasks: list[Task], roles: Roles, kinds: Mapping[str, str], file: FileLocation) -> None:

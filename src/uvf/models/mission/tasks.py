@@ -53,6 +53,9 @@ class TaskCondition(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     fails: Annotated[bool | None, plain("A failsafe of the vehicle holds, or none does.")] = None
     charge_below: Annotated[Share | None, key("", "Charge of its battery, 0 to 1, is less.")] = None
     explored: Annotated[Share | None, key("", "Share of the floor that it has explored, by its own estimate.")] = None
+    found: Annotated[
+        Annotated[int, Meta(ge=1, le=200)] | None, key("", "The vehicles together have found so many markers, each counted once.")
+    ] = None
 
 
 class ModeTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -125,11 +128,23 @@ class ShareMapTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ] = None
 
 
+class FoundMarkers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Markers that vehicles find while others go to them."""
+
+    by: Annotated[Who, plain("Vehicles or roles whose detectors find them; the same marker found by two counts once.")]
+    count: Annotated[int, Meta(ge=1, le=200), key("", "How many have to be visited.")]
+    near: Annotated[Distance, key("m", "Distance from a marker at which a vehicle stops.")] = 1.2
+
+
 class VisitTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Share places out among a team so that the last one is visited early, and go there."""
+    """Share places out among a team and go there: given ones so that the last is visited early, or markers as they are found.
+
+    Who has no marker to go to goes on with its job: one that explores looks for more.
+    """
 
     vehicle: Annotated[Who, plain("Ground vehicles or roles.")]
-    places: Annotated[list[tuple[Metres, Metres]], Meta(min_length=1, max_length=50), plain("Places [x, y] in metres, world frame.")]
+    found: Annotated[FoundMarkers | None, plain("Markers that are visited, instead of `places`.")] = None
+    places: Annotated[list[tuple[Metres, Metres]], Meta(max_length=50), plain("Places [x, y] in metres, world frame.")] = []
 
 
 class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -7,6 +7,8 @@ import pytest
 from PIL import Image
 
 from schemas.messages import (
+    Detection,
+    Detections,
     EstimateQuality,
     FrameTransform,
     FrameTransforms,
@@ -118,6 +120,15 @@ def test_what_moves_is_drawn_with_where_it_will_be_and_goes_when_nobody_tells_of
     assert isinstance(hear(station, obstacles=MovingObstacles(obstacles=[walker]))[f"/moving/{UGV}/0"], Polyline)
     station.run(2.0)
     assert f"/moving/{UGV}/0" not in station.page.now.nodes
+
+
+def test_markers_found_are_ringed_and_named_until_there_are_others(station):
+    found = Detection(id=3, position=Vector3(x=1, y=2, z=0.5), sigma=0.8, views=4)
+    nodes = hear(station, detections=Detections(detections=[found]))
+    ring = nodes[f"/marker/{UGV}/3"]
+    assert ring.points[:, 0].max() == pytest.approx(1.8) and ring.points[:, 2] == pytest.approx(0.5)
+    assert nodes[f"/marker/{UGV}/3/name"].text == f"{UGV} 3"
+    assert f"/marker/{UGV}/3" not in hear(station, detections=Detections())
 
 
 def transform(parent, child, x):

@@ -1,0 +1,119 @@
+"""Markers are visited as they are found: by who is free, each by one, from a side that can be reached."""
+
+import math
+
+import pytest
+
+from schemas.messages import Mode
+from tests.services.executive.team import Team
+from uvf.models.yaml_data import BadInput
+
+VISIT = "  - {name: visit, visit: {vehicle: team, found: {by: [carl, anne], count: COUNT, near: 1.0}}}\n"
+
+
+@pytest.fixture
+def team(tmp_path):
+    made = Team(VISIT.replace("COUNT", "2"), tmp_path)
+    made.step(10)
+    return made
+
+
+def goals(team):
+    return [(vehicle, round(m.position.x, 2), round(m.position.y, 2)) for name, vehicle, m in team.asked if name == "goal"]
+
+
+def test_vehicles_are_armed_and_wait_for_markers(team):
+    assert sorted(team.requests()) == ["arm anne", "arm bert", "mode anne", "mode bert"]
+    assert team.tasks.tasks[0].reason == "0 of 2 visited, 0 found"
+
+
+def test_the_nearest_goes_to_each_and_stops_before_it_on_its_own_side(team):
+    team.find("carl", (4.2, 1.3), (8.0, 7.4))
+    team.step(5)
+    assert sorted(goals(team)) == [("anne", 3.2, 1.3), ("bert", 8.0, 6.4)]
+    team.arrive("anne")
+    team.arrive("bert")
+    team.step(5)
+    assert team.states() == ["DONE"]
+
+
+def test_a_marker_found_by_two_is_visited_once(team):
+    team.find("carl", (4.2, 1.3))
+    team.find("anne", (4.6, 1.5))
+    team.step(5)
+    assert [vehicle for vehicle, *_ in goals(team)] == ["anne"]
+
+
+def test_who_has_been_somewhere_goes_to_the_next(team):
+    team.find("carl", (4.2, 1.3))
+    team.step(5)
+    team.arrive("anne")
+    team.step(5)
+    assert team.states() == ["RUNNING"]
+    team.find("carl", (4.2, 1.3), (2.2, 5.3))
+    team.step(5)
+    assert [vehicle for vehicle, *_ in goals(team)] == ["anne", "anne"]
+
+
+def test_the_shortest_way_comes_first_whoever_is_named_first(team):
+    team.find("carl", (7.0, 4.4))
+    team.step(5)
+    assert [vehicle for vehicle, *_ in goals(team)] == ["bert"]
+
+
+def test_where_there_is_no_way_other_sides_and_other_markers_are_tried(team):
+    team.refusals["preview", "anne"] = "the goal is in an obstacle"
+    team.refusals["preview", "bert"] = "the goal is in an obstacle"
+    team.find("carl", (4.2, 1.3))
+    team.step(60)
+    asked = [(m.position.x, m.position.y) for name, vehicle, m in team.asked if name == "preview" and vehicle == "anne"]
+    assert len(asked) == 8 and all(math.dist(place, (4.2, 1.3)) == pytest.approx(1.0) for place in asked)
+    assert goals(team) == [] and team.states() == ["RUNNING"]
+    team.refusals.clear()
+    team.step(300)
+    assert [vehicle for vehicle, *_ in goals(team)] != []
+
+
+def test_a_goal_that_is_given_up_is_left_for_a_while(team):
+    team.find("carl", (4.2, 1.3))
+    team.step(8)
+    team.give_up("anne", "walls all about")
+    team.step(8)
+    assert team.states() == ["RUNNING"]
+    assert [vehicle for vehicle, *_ in goals(team)] == ["anne", "bert"]
+
+
+def test_who_is_taken_over_by_somebody_fails_the_task(team):
+    team.find("carl", (4.2, 1.3))
+    team.step(8)
+    team.status["anne"].mode = Mode.MODE_MANUAL
+    team.give_up("anne", "manual")
+    team.step(3)
+    assert team.states() == ["FAILED"]
+
+
+def test_a_condition_counts_each_marker_once(tmp_path):
+    team = Team("  - {name: find, when: {vehicle: [carl, anne], found: 2}}\n", tmp_path)
+    team.find("carl", (4.2, 1.3))
+    team.find("anne", (4.6, 1.5))
+    team.step(2)
+    assert team.tasks.tasks[0].reason == "waits until carl and anne have found 2 markers"
+    team.find("anne", (4.6, 1.5), (9.0, 9.0))
+    team.step(2)
+    assert team.states() == ["DONE"]
+
+
+@pytest.mark.parametrize(
+    ("task", "why"),
+    [
+        ("visit: {vehicle: team}", "give places, or found"),
+        ("visit: {vehicle: team, places: [[1, 1]], found: {by: carl, count: 1}}", "one of the two"),
+        ("visit: {vehicle: team, found: {by: bert, count: 1}}", "bert looks for no markers"),
+        ("visit: {vehicle: team, found: {by: karl, count: 1}}", "did you mean 'carl'"),
+        ("when: {vehicle: bert, found: 2}", "bert looks for no markers"),
+        ("when: {found: 2}", "whose?"),
+    ],
+)
+def test_what_cannot_be_done_is_refused_at_load(task, why, tmp_path):
+    with pytest.raises(BadInput, match=why):
+        Team(f"  - {{{task}}}\n", tmp_path)
