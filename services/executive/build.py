@@ -15,4 +15,8 @@ def build(site: Scenario) -> list[ServiceInstance]:
     drives = [task.drive.track for task in walk(mission.tasks) if task.drive is not None]
     tracks = {name: load_drive_track(site.mission_path.parent / name) for name in drives}
     driven = tuple(member.name for member in site.of_kind("ground"))
-    return [ServiceInstance(Executive, lambda: Executive(mission.tasks, site.members, mission.roles, tracks), writes_for=driven)]
+    return [
+        ServiceInstance(
+            Executive, lambda: Executive(mission.tasks, site.members, mission.roles, tracks, mission.chargers), writes_for=driven
+        )
+    ]

@@ -6,6 +6,7 @@ from py_trees.behaviour import Behaviour
 
 from schemas.messages import Mode, TaskStatus
 from services.executive.actions.action import ArmAction, ChangeModeAction, TaskAction
+from services.executive.actions.charging import ChargeAction, Chargers
 from services.executive.actions.driving import FlyToAction, FollowAction, GoalAction, RouteAction
 from services.executive.actions.found_markers import VisitFoundAction
 from services.executive.actions.joystick import DriveAction, DriveTrack
@@ -14,15 +15,17 @@ from services.executive.actions.missions import ExploreAction, MissionAction
 from services.executive.actions.visiting import VisitAction
 from services.executive.situation import TeamSituation
 from services.executive.tree import ActionNode, TaskNode, composite, nothing
+from uvf.models.mission.fixtures import ChargerFile
 from uvf.models.mission.tasks import COMPOSITES, FollowTask, GoalTask, Task, parts_of, title_of, verb_of
 
 
 class Planter:
     """Makes the tree of a mission, and the records of its tasks, each before its parts."""
 
-    def __init__(self, now: TeamSituation, tracks: Mapping[str, DriveTrack]) -> None:
+    def __init__(self, now: TeamSituation, tracks: Mapping[str, DriveTrack], chargers: Sequence[ChargerFile]) -> None:
         """tracks: recorded drives by their paths in the mission file."""
         self._now, self._tracks = now, tracks
+        self._chargers = Chargers(chargers)
         self.records: list[TaskStatus] = []
         self.nodes: list[TaskNode] = []
         """Of the records, in their order."""
@@ -59,6 +62,8 @@ class Planter:
             return [MissionAction(name) for name in who(task.mission)]
         if task.explore is not None:
             return [ExploreAction(name) for name in who(task.explore)]
+        if task.charge is not None:
+            return [ChargeAction(name, task.charge, self._chargers) for name in who(task.charge.vehicle)]
         if task.drive is not None:
             return [DriveAction(who(task.drive.vehicle), self._tracks[task.drive.track])]
         if task.save_map is not None:

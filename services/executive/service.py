@@ -12,6 +12,7 @@ from services.executive.interface import SOURCE
 from services.executive.planting import Planter
 from services.executive.situation import TeamSituation
 from services.executive.tree import STATES
+from uvf.models.mission.fixtures import ChargerFile
 from uvf.models.mission.tasks import Task
 from uvf.models.scenario import MissionVehicle
 from uvf.runtime.contract.declaration import Reads, topic
@@ -46,10 +47,11 @@ class Executive(Service):
         members: Mapping[str, MissionVehicle],
         roles: Mapping[str, list[str]],
         tracks: Mapping[str, DriveTrack],
+        chargers: Sequence[ChargerFile] = (),
     ) -> None:
         """tracks: recorded drives by their paths in the mission file."""
         self._now = TeamSituation(members, roles)
-        planter = Planter(self._now, tracks)
+        planter = Planter(self._now, tracks, chargers)
         self._tree = planter.tree(tasks)
         self._records, self._nodes = planter.records, planter.nodes
         self._told: list[TaskStatus.State] = [TaskStatus.WAITING] * len(self._records)

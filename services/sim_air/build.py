@@ -29,6 +29,7 @@ from uvf.models.scenario import AIRCRAFT_RADIUS, MissionVehicle, Scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.urdf.model import load_urdf
 from uvf.models.vehicle.air import AirBody
+from uvf.models.vehicle.battery import Charge
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.layers import folders_of, holding
 from uvf.models.world.footing import Footing
@@ -168,6 +169,7 @@ def _aircraft(site: Scenario, land: Land, member: MissionVehicle, airframe: Airf
     air = _air(site, member, airframe)
     now, level = _begun(land, member, airframe, begin, air)
     aircraft = Aircraft(member.name, member.file, airframe, Actuators(now, body), level)
+    aircraft.charge = Charge(body.battery, begin.charge) if body.battery is not None else None
     aircraft.begin = partial(_begin, site, land, member)
     aircraft.wind, aircraft.air_mass = air.mean(begin.z), air
     fitted = member.file.sensors

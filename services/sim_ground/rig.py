@@ -1,6 +1,7 @@
 """One ground vehicle's sensors: which of them are due at a step, and what they say."""
 
 import copy
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple, Self
@@ -34,6 +35,7 @@ from uvf.sensors.sampling import DelayLine, Due
 Floats = NDArray[np.float64]
 
 STEP_HZ = 100.0
+STANDS_BELOW = 0.05  # m/s
 
 
 class Moment(NamedTuple):
@@ -78,7 +80,7 @@ class Rig:
         self._contact_due = Due(topics.CONTACT.hz)
         self._joints_due = Due(topics.JOINTS.hz)
         self._battery_due = Due(topics.BATTERY.hz)
-        self.charge = Charge(ground.battery) if ground.battery is not None else None
+        self.charge = Charge(ground.battery, member.entry.start.charge) if ground.battery is not None else None
         self._track: BodyTrack | None = None
         """Of the body, for a lidar that takes its time."""
         self._fitted = dict(self._fit())
@@ -134,7 +136,7 @@ class Rig:
         if self._truth_due.at(t):
             found["truth"] = readings.truth_message(t, moment.body)
         if self.charge is not None:
-            self.charge.draw(moment.motor_energy * STEP_HZ, 1 / STEP_HZ)
+            self.charge.draw(moment.motor_energy * STEP_HZ, 1 / STEP_HZ, self._charger(moment.body))
             if self._battery_due.at(t):
                 found["battery"] = battery_message(t, self.charge)
         if self._contact_due.at(t):
@@ -144,6 +146,13 @@ class Rig:
             found["joints"] = joints = readings.joints_message(t, self.ground, moment.body)
             found["joint_frames"] = self._links.turned(self._member.name, joints)
         return found
+
+    def _charger(self, body: BodyState) -> float:
+        """W, of the charger on which the vehicle stands; 0 without one."""
+        if float(np.linalg.norm(body.velocity)) > STANDS_BELOW:
+            return 0.0
+        x, y = body.position[:2].tolist()
+        return max((c.power for c in self._site.mission.chargers if math.hypot(x - c.x, y - c.y) <= c.radius), default=0.0)
 
     def _rng(self, *names: str) -> np.random.Generator:
         return self._site.rng(self._member.name, *names)

@@ -31,6 +31,8 @@ class _Visitor:
     goal: GoalAction | None = None
     shunned: list[tuple[Point, float]] = field(default_factory=list)
     """Markers that it could not reach, each until a time [s]."""
+    why_out: str = ""
+    """Why it goes to no marker any more; "" while it does."""
 
     def drop(self) -> None:
         """It goes to no marker any more."""
@@ -54,18 +56,25 @@ class VisitFoundAction:
             visitor.engage.begin(now)
 
     def step(self, now: TeamSituation) -> bool:
-        """Whether so many markers have been visited. Raises Failed where a vehicle does something else."""
+        """Whether so many markers have been visited. Raises Failed when no vehicle is left that could."""
         found = now.found(self._finders)
         for name, visitor in self._visitors.items():
+            if visitor.why_out:
+                continue
             if not visitor.is_engaged:
-                visitor.is_engaged = visitor.engage.step(now)
+                self._engage(now, visitor)
+            elif now.mode(name) != Mode.MODE_MISSION or not now.is_armed(name):
+                self._leave_out(now, visitor, f"{name} does something else")
             elif visitor.goal is not None:
                 self._drive(now, visitor, visitor.goal)
             elif visitor.marker is not None:
                 self._ask(now, name, visitor, visitor.marker)
         self._share_out(now, found)
+        out = [visitor.why_out for visitor in self._visitors.values() if visitor.why_out]
+        if len(out) == len(self._visitors):
+            raise Failed("; ".join(out))
         heading = [f"{name} goes to ({v.marker[0]:.0f}, {v.marker[1]:.0f})" for name, v in self._visitors.items() if v.marker is not None]
-        self.reason = "; ".join([f"{len(self._visited)} of {self._count} visited, {len(found)} found", *heading])
+        self.reason = "; ".join([f"{len(self._visited)} of {self._count} visited, {len(found)} found", *heading, *out])
         return len(self._visited) >= self._count
 
     def stop(self, now: TeamSituation) -> None:
@@ -89,7 +98,23 @@ class VisitFoundAction:
 
     @staticmethod
     def _is_free(visitor: _Visitor) -> bool:
-        return visitor.is_engaged and visitor.marker is None
+        return visitor.is_engaged and not visitor.why_out and visitor.marker is None
+
+    @staticmethod
+    def _engage(now: TeamSituation, visitor: _Visitor) -> None:
+        try:
+            visitor.is_engaged = visitor.engage.step(now)
+        except Failed as error:
+            visitor.why_out = str(error)
+
+    @staticmethod
+    def _leave_out(now: TeamSituation, visitor: _Visitor, why: str) -> None:
+        """Somebody else has taken over, or the vehicle has failed: its marker is for the others."""
+        if visitor.goal is not None:
+            visitor.goal.stop(now)
+        now.desk.drop(visitor.ticket)
+        visitor.drop()
+        visitor.why_out = why
 
     def _about(self, marker: Point, here: Point) -> list[Point]:
         """Places about a marker at which to stop, those on this side first."""
@@ -119,8 +144,6 @@ class VisitFoundAction:
         try:
             there = goal.step(now)
         except Failed:
-            if now.mode(goal.vehicle) != Mode.MODE_MISSION or not now.is_armed(goal.vehicle):
-                raise  # somebody else has taken over
             visitor.shunned.append((marker, now.t + SHUNNED))
             goal.stop(now)
             visitor.drop()

@@ -3,7 +3,7 @@
 import hashlib
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -13,12 +13,12 @@ import numpy as np
 
 from uvf.models.mission.extending import merge
 from uvf.models.mission.faults import check_parts
-from uvf.models.mission.file import MarkerFile, MissionFile, Vehicle, load_mission
+from uvf.models.mission.file import MissionFile, Vehicle, load_mission
+from uvf.models.mission.fixtures import furnished
 from uvf.models.mission.task_check import check_finders, check_shares
 from uvf.models.params import Params
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
-from uvf.models.world.file import Cylinder, WorldFile, load_world
-from uvf.models.world.terrain import relief
+from uvf.models.world.file import WorldFile, load_world
 from uvf.models.world.wind import Wind
 from uvf.models.yaml_data import BadInput, FileLocation, convert
 
@@ -105,24 +105,6 @@ def _with_params(file: VehicleFile, entry: Vehicle) -> VehicleFile:
     return msgspec.structs.replace(file, params=merge(file.params, entry.params)) if entry.params else file
 
 
-def with_markers(world: WorldFile, markers: Sequence[MarkerFile], place: FileLocation) -> WorldFile:
-    """The world with the markers of a mission, which stand on its ground. Raises BadInput for one that stands beside its floor."""
-    if not markers:
-        return world
-    land = relief(world)
-    x_min, y_min, x_max, y_max = world.floor
-    posts = []
-    for i, marker in enumerate(markers):
-        if not (x_min <= marker.x <= x_max and y_min <= marker.y <= y_max):
-            raise BadInput(
-                f"{place.at(i)}: ({marker.x:g}, {marker.y:g}) is not on the floor: x {x_min:g}..{x_max:g}, y {y_min:g}..{y_max:g}"
-            )
-        ground = 0.0 if land is None else float(land.at(np.array(marker.x), np.array(marker.y))[0])
-        base = (marker.x, marker.y, ground)
-        posts.append(Cylinder(name=f"marker_{i + 1}", base=base, radius=marker.radius, height=marker.height, colour=marker.colour))
-    return msgspec.structs.replace(world, cylinders=[*world.cylinders, *posts])
-
-
 def load_scenario(mission: str | Path, root: str | Path = ROOT) -> Scenario:
     """Loads a mission file and all that it names. root: folder that holds ``vehicles`` and ``worlds``. Raises BadInput."""
     mission, root = Path(mission), Path(root)
@@ -133,7 +115,7 @@ def load_scenario(mission: str | Path, root: str | Path = ROOT) -> Scenario:
         name: MissionVehicle(name, entry, _with_params(files[name], entry), vehicles / entry.model, str(mission))
         for name, entry in data.vehicles.items()
     }
-    world = with_markers(load_world(worlds, data.world, place.at("world")), data.markers, place.at("markers"))
+    world = furnished(load_world(worlds, data.world, place.at("world")), data.markers, data.chargers, place)
     site = Scenario(mission, data, world, worlds / data.world, members)
     check_starts(site)
     kinds = {name: file.kind for name, file in files.items()}

@@ -64,3 +64,25 @@ def test_a_load_beyond_what_it_can_give_takes_half_its_voltage_and_no_more():
     for _ in range(2000):
         charge.draw(50_000.0, 0.005)
         assert charge.voltage >= 0.5 * charge.open_circuit
+
+
+def test_a_charger_fills_it_and_no_fuller_than_full():
+    charge = Charge(IDEAL, 0.5)
+    charge.draw(0.0, 2.0, charger=100.0)
+    assert charge.remaining == pytest.approx(0.7) and charge.current < 0.0
+    charge.draw(0.0, 100.0, charger=100.0)
+    assert charge.remaining == 1.0
+    charge.draw(0.0, 1.0, charger=100.0)
+    assert (charge.remaining, charge.current) == (1.0, 0.0)
+
+
+def test_a_charger_that_gives_less_than_is_drawn_only_slows_it_down():
+    charge = Charge(IDEAL, 0.5)
+    charge.draw(30.0, 1.0, charger=20.0)
+    assert charge.remaining == pytest.approx(0.49)
+
+
+def test_an_empty_one_is_filled_again():
+    charge = Charge(IDEAL, 0.0)
+    charge.draw(0.0, 1.0, charger=100.0)
+    assert charge.remaining == pytest.approx(0.1) and charge.throttle(0.7) == 0.7

@@ -63,7 +63,7 @@ class Team:
         self._answers: dict[str, list[Answer]] = {}
 
     def made(self) -> Executive:
-        return Executive(self.mission.tasks, self.site.members, self.mission.roles, self.tracks)
+        return Executive(self.mission.tasks, self.site.members, self.mission.roles, self.tracks, self.mission.chargers)
 
     def step(self, n: int = 1) -> None:
         for _ in range(n):

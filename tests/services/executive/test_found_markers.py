@@ -83,13 +83,28 @@ def test_a_goal_that_is_given_up_is_left_for_a_while(team):
     assert [vehicle for vehicle, *_ in goals(team)] == ["anne", "bert"]
 
 
-def test_who_is_taken_over_by_somebody_fails_the_task(team):
+def test_the_marker_of_who_is_taken_over_or_has_tipped_is_for_the_others(team):
     team.find("carl", (4.2, 1.3))
     team.step(8)
     team.status["anne"].mode = Mode.MODE_MANUAL
-    team.give_up("anne", "manual")
+    team.step(8)
+    assert [vehicle for vehicle, *_ in goals(team)] == ["anne", "bert"]
+    assert team.tasks.tasks[0].reason.endswith("anne does something else")
+    team.status["bert"].armed = False
     team.step(3)
     assert team.states() == ["FAILED"]
+    assert team.tasks.tasks[0].reason == "anne does something else; bert does something else"
+
+
+def test_who_cannot_be_armed_is_left_out(tmp_path):
+    team = Team(VISIT.replace("COUNT", "1"), tmp_path)
+    team.refusals["arm", "anne"] = "it lies on its side"
+    team.find("carl", (4.2, 1.3))
+    team.step(200)
+    assert [vehicle for vehicle, *_ in goals(team)] == ["bert"]
+    team.arrive("bert")
+    team.step(3)
+    assert team.states() == ["DONE"]
 
 
 def test_a_condition_counts_each_marker_once(tmp_path):

@@ -11,6 +11,7 @@ from services.sim_ground.rig import Moment, Rig
 from tests.services.sim_ground.ride import site_with
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import WheelSpeeds
+from uvf.models.mission.fixtures import ChargerFile
 from uvf.models.shapes.scene import scene
 from uvf.models.vehicle.sensors import Bumper, GnssSensor, Mount, RangeFinder, Sonar
 from uvf.models.world.geometry import solids
@@ -120,3 +121,25 @@ def test_the_bumpers_that_feel_a_touch_are_named(stand):
         (True, "door", ["right", "rear"]),
         (False, "", []),
     ]
+
+
+@pytest.mark.parametrize(
+    ("charger", "speed", "rises"),
+    [((6.1, 4.4), 0.0, True), ((6.5, 4.4), 0.0, False), ((6.1, 4.4), 0.2, False), (None, 0.0, False)],
+    ids=["on it", "beside it", "driving over it", "none"],
+)
+def test_a_vehicle_is_charged_while_it_stands_on_a_charger(tmp_path, charger, speed, rises):
+    site = site_with(tmp_path, {"burger": (6.0, 4.4, 0.0)}, 1)
+    member = site.members["burger"]
+    half = msgspec.structs.replace(member.entry, start=msgspec.structs.replace(member.entry.start, charge=0.5))
+    chargers = [] if charger is None else [ChargerFile(*charger)]
+    site = replace(site, mission=msgspec.structs.replace(site.mission, chargers=chargers))
+    rig = Rig(site, replace(member, entry=half), member.file.ground, scene(solids(site.world)))
+    body = (
+        STILL._replace(velocity=np.array((speed, 0.0, 0.0)))
+        if hasattr(STILL, "_replace")
+        else replace(STILL, velocity=np.array((speed, 0, 0)))
+    )
+    for n in range(1, 301):
+        rig.read(n / 100, Moment(body))
+    assert (rig.charge.remaining > 0.5) is rises

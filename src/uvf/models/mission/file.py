@@ -10,11 +10,11 @@ from uvf.models.keys import key, name_like, plain
 from uvf.models.mission.extending import whole_mission
 from uvf.models.mission.faults import Fault, check_faults
 from uvf.models.mission.fence import FenceFile, zones_of
+from uvf.models.mission.fixtures import ChargerFile, MarkerFile
 from uvf.models.mission.formation import Follow, check_follow
-from uvf.models.mission.task_check import check_tasks
+from uvf.models.mission.task_check import check_charging, check_tasks
 from uvf.models.mission.tasks import Task, walk
 from uvf.models.names import FOLDER, SYSTEM, VEHICLE
-from uvf.models.world.file import Colour, Positive
 from uvf.models.world.wind import Wind, check_wind
 from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
 
@@ -36,6 +36,7 @@ class StartPose(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     speed: Annotated[NotNegative, key("m/s", "Airspeed of an aircraft at the start; 0 means the `trim_speed` of its file.")] = 0.0
     climb: Annotated[float, Meta(ge=-1.5, le=1.5), key("rad", "Climb angle of an aircraft at the start, up from the horizon.")] = 0.0
     turn_rate: Annotated[float, Meta(ge=-3, le=3), key("rad/s", "Turn rate of an aircraft at the start, positive to the left.")] = 0.0
+    charge: Annotated[float, Meta(ge=0, le=1), key("", "Charge of its battery at the start, 0 to 1.")] = 1.0
     on_ground: Annotated[bool, plain("The aircraft starts on its wheels, as one with z = 0 does.")] = False
 
 
@@ -148,16 +149,6 @@ class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ] = None
 
 
-class MarkerFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A coloured post that vehicles look for. Only simulators and scores know where it stands."""
-
-    x: Annotated[Metres, key("m", "East of the world's origin.")]
-    y: Annotated[Metres, key("m", "North of the world's origin.")]
-    radius: Annotated[Positive, key("m", "Radius.")] = 0.3
-    height: Annotated[Positive, key("m", "Height above the ground there.")] = 1.0
-    colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")] = (1.0, 0.0, 0.85)
-
-
 class Criterion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One line of the score: a measured figure of a vehicle or a task and its limits; see ``launch.scoring.scores``."""
 
@@ -181,6 +172,9 @@ class MissionFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     seed: Annotated[int, key("", "Seed of every random number of the run. Two lockstep runs with the same seed are equal to the byte.")] = 1
     duration: Annotated[float, Meta(gt=0, le=1e6), key("s", "Simulation time after which `uvf run` ends and scores.")] = 120.0
     markers: Annotated[list[MarkerFile], Meta(max_length=200), plain("Coloured posts in the world that vehicles look for.")] = []
+    chargers: Annotated[
+        list[ChargerFile], Meta(max_length=100), plain("Places in the world on which ground vehicles are charged while they stand there.")
+    ] = []
     roles: Annotated[dict[str, list[str]], plain("Vehicles by role: tasks name roles instead of vehicles, where several share one.")] = {}
     tasks: Annotated[
         list[Task],
@@ -205,6 +199,7 @@ def load_mission(path: str | Path) -> MissionFile:
         check_wind(mission.wind, file.at("wind"))
     check_faults(mission.faults, mission.vehicles, file.at("faults"))
     check_tasks(mission.tasks, mission.roles, mission.vehicles, file, path.parent)
+    check_charging(mission.tasks, len(mission.chargers), file)
     tasks = {task.name for task in walk(mission.tasks) if task.name}
     for i, criterion in enumerate(mission.criteria):
         _check_criterion(criterion, mission.vehicles, tasks, file.at("criteria", i))

@@ -68,6 +68,10 @@ def _check_task(task: Task, place: FileLocation, folder: Path) -> None:
         raise BadInput(f"{place}: nobody follows to an end: say with until when it is done")
     if task.share_map is not None and (area := task.share_map.area) is not None and not (area[0] < area[2] and area[1] < area[3]):
         raise BadInput(f"{place.at('share_map', 'area')}: nothing lies in it; give [x_min, y_min, x_max, y_max]")
+    if task.charge is not None and not task.charge.below < task.charge.up_to:
+        raise BadInput(
+            f"{place.at('charge')}: below {task.charge.below:g} it goes there, at {task.charge.up_to:g} it leaves; make 'up_to' larger"
+        )
     if task.visit is not None and bool(task.visit.places) is (task.visit.found is not None):
         raise BadInput(f"{place.at('visit')}: give places, or found with the vehicles that find markers: one of the two")
     if task.drive is not None and not (folder / task.drive.track).is_file():
@@ -112,6 +116,13 @@ def _check_condition(condition: TaskCondition, known: set[str], place: FileLocat
     for name in (condition.task, condition.failed):
         if name is not None and name not in known:
             raise BadInput(f"{place}: no task is called '{name}'; {nearest(name, known)}")
+
+
+def check_charging(tasks: list[Task], chargers: int, file: FileLocation) -> None:
+    """Checks that there are chargers where a task needs one. Raises BadInput."""
+    for task, place in _placed(tasks, file.at("tasks")):
+        if task.charge is not None and chargers == 0:
+            raise BadInput(f"{place.at('charge')}: the mission has no chargers; set some up under 'chargers'")
 
 
 def check_finders(tasks: list[Task], roles: Roles, seeing: Collection[str], file: FileLocation) -> None:

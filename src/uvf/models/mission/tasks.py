@@ -147,6 +147,14 @@ class VisitTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     places: Annotated[list[tuple[Metres, Metres]], Meta(max_length=50), plain("Places [x, y] in metres, world frame.")] = []
 
 
+class ChargeTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Drive to a free charger when the battery is low, and stand there until it is charged. Done at once when it is not low."""
+
+    vehicle: Annotated[Who, plain("Ground vehicles or roles.")]
+    below: Annotated[Share, key("", "Charge below which it is charged.")] = 0.3
+    up_to: Annotated[Share, key("", "Charge with which it leaves.")] = 0.9
+
+
 class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One node of the tree: at most one thing to do, when it begins, and how it ends. Without anything to do it waits for ``when``.
 
@@ -170,6 +178,7 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     route: Annotated[RouteTask | None, plain("Drive to several places.")] = None
     visit: Annotated[VisitTask | None, plain("Share places out among a team.")] = None
     follow: Annotated[FollowTask | None, plain("Drive behind another vehicle.")] = None
+    charge: Annotated[ChargeTask | None, plain("Have the battery charged when it is low.")] = None
     drive: Annotated[DriveTask | None, plain("Drive as recorded.")] = None
     save_map: Annotated[SaveMapTask | None, plain("Save a map.")] = None
     share_map: Annotated[ShareMapTask | None, plain("Give a map to other vehicles.")] = None

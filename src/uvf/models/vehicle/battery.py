@@ -17,16 +17,21 @@ class Charge:
     keeps its first milliseconds, when it still stands, from pulling the voltage down.
     """
 
-    def __init__(self, pack: BatteryPack) -> None:
+    def __init__(self, pack: BatteryPack, charged: float = 1.0) -> None:
+        """charged: energy at first, from 0 to 1 of the full pack [-]."""
         self._pack = pack
-        self._left = pack.energy  # J, at the open-circuit voltage
+        self._left = charged * pack.energy  # J, at the open-circuit voltage
         self._sag = 0.0  # V
         self.current = 0.0  # A
 
-    def draw(self, motor_power: float, dt: float) -> None:
-        """Draws the electric ``motor_power`` [W], and that of the avionics, for ``dt`` [s]."""
-        self.current = (motor_power + self._pack.avionics) / self.voltage
-        self._left = max(self._left - self.open_circuit * self.current * dt, 0.0)
+    def draw(self, motor_power: float, dt: float, charger: float = 0.0) -> None:
+        """Draws the electric ``motor_power`` [W], and that of the avionics, for ``dt`` [s], less what a ``charger`` [W] gives.
+
+        A charger gives no more than is drawn once the pack is full. A current into the pack is negative.
+        """
+        power = motor_power + self._pack.avionics - charger
+        self.current = max(power, 0.0) / self.voltage if self.remaining >= 1.0 else power / self.voltage
+        self._left = min(max(self._left - self.open_circuit * self.current * dt, 0.0), self._pack.energy)
         self._sag += (self._pack.resistance * self.current - self._sag) * -math.expm1(-dt / RELAXATION)
 
     @property
@@ -42,7 +47,7 @@ class Charge:
     @property
     def voltage(self) -> float:
         """Terminal voltage [V]."""
-        return self.open_circuit - min(self._sag, MOST_LOST * self.open_circuit)
+        return self.open_circuit - max(min(self._sag, MOST_LOST * self.open_circuit), -MOST_LOST * self.open_circuit)
 
     def throttle(self, wanted: float) -> float:
         """Throttle, 0 to 1 [-], that the motors get of ``wanted`` [-]: their voltage is at most the battery's; 0 when it is empty."""
