@@ -187,7 +187,7 @@ class CancelRequest(_message.Message):
     def __init__(self, source: _Optional[str] = ...) -> None: ...
 
 class NavStatus(_message.Message):
-    __slots__ = ("timestamp", "state", "job", "goal", "distance_left", "reason", "explored", "time_left", "recoveries", "route", "route_at", "follow", "radius")
+    __slots__ = ("timestamp", "state", "job", "goal", "distance_left", "reason", "explored", "time_left", "recoveries", "route", "route_at", "follow", "radius", "waits_for")
     class State(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
         IDLE: _ClassVar[NavStatus.State]
@@ -217,6 +217,7 @@ class NavStatus(_message.Message):
     ROUTE_AT_FIELD_NUMBER: _ClassVar[int]
     FOLLOW_FIELD_NUMBER: _ClassVar[int]
     RADIUS_FIELD_NUMBER: _ClassVar[int]
+    WAITS_FOR_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     state: NavStatus.State
     job: str
@@ -230,4 +231,5 @@ class NavStatus(_message.Message):
     route_at: int
     follow: FollowRequest
     radius: float
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., state: _Optional[_Union[NavStatus.State, str]] = ..., job: _Optional[str] = ..., goal: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., distance_left: _Optional[float] = ..., reason: _Optional[str] = ..., explored: _Optional[float] = ..., time_left: _Optional[float] = ..., recoveries: _Optional[int] = ..., route: _Optional[_Union[RouteRequest, _Mapping]] = ..., route_at: _Optional[int] = ..., follow: _Optional[_Union[FollowRequest, _Mapping]] = ..., radius: _Optional[float] = ...) -> None: ...
+    waits_for: str
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., state: _Optional[_Union[NavStatus.State, str]] = ..., job: _Optional[str] = ..., goal: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., distance_left: _Optional[float] = ..., reason: _Optional[str] = ..., explored: _Optional[float] = ..., time_left: _Optional[float] = ..., recoveries: _Optional[int] = ..., route: _Optional[_Union[RouteRequest, _Mapping]] = ..., route_at: _Optional[int] = ..., follow: _Optional[_Union[FollowRequest, _Mapping]] = ..., radius: _Optional[float] = ..., waits_for: _Optional[str] = ...) -> None: ...

@@ -8,7 +8,7 @@ from services.planner.team import Teammates
 from uvf.maths.se2 import Pose2
 from uvf.planning.navigation.directive import Action, Directive
 from uvf.planning.navigation.global_routes import GlobalRoutes
-from uvf.planning.navigation.right_of_way import AHEAD, Traveller, give_way
+from uvf.planning.navigation.right_of_way import AHEAD, Traveller, give_way, is_first_of_circle
 from uvf.planning.smoothing import from_place, way_along
 
 BLURRED = 0.1  # m by which the map may show a vehicle of the team elsewhere
@@ -32,7 +32,7 @@ class GivingWay:
         own = own[way_along(own) <= AHEAD]
         clearance = self._routes.map_clearance(own, team.discs + np.array((0.0, 0.0, BLURRED)))
         wait = give_way(Traveller(self._name, own, self._radius), clearance, others)
-        if wait is None:
+        if wait is None or is_first_of_circle(self._name, wait.for_whom, team.waiting):
             return directive
         self.waits_for = wait.for_whom
         return replace(directive, until=passed + wait.until)

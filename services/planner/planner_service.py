@@ -337,7 +337,7 @@ class PlannerService(Service):
         )
         status.state, status.recoveries = self._state(told.status), told.recoveries
         self._book.show(status)
-        status.radius = self._footprint.circumscribed_radius
+        status.radius, status.waits_for = self._footprint.circumscribed_radius, self._right.waits_for
         if self._target is not None:
             x, y, _ = compose(self._world_from_map, Pose2(self._target[0], self._target[1], 0.0))
             status.goal.x, status.goal.y = x, y

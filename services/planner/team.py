@@ -48,6 +48,11 @@ class Teammates:
         return [OthersGoal((x, y), name < self._own) for (name, _), (x, y) in zip(exploring, places, strict=True)]
 
     @property
+    def waiting(self) -> dict[str, str]:
+        """For whom each of those waits who wait at a narrow passage."""
+        return {name: said.waits_for for name, said in self._said.items() if name != self._own and said.waits_for and said.state in AT_IT}
+
+    @property
     def travellers(self) -> list[Traveller]:
         """Those that have a path, with it from where they are on [m, map]."""
         found = []

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from uvf.planning.navigation.right_of_way import ROOM, Traveller, give_way
+from uvf.planning.navigation.right_of_way import ROOM, Traveller, give_way, is_first_of_circle
 from uvf.planning.smoothing import first_part, from_place, length, resample
 
 RADIUS = 0.125  # m
@@ -109,3 +109,19 @@ def test_a_path_is_cut_where_it_is_said():
     assert rest[0] == pytest.approx((1.02, 0.1))
     assert rest[-1] == pytest.approx((2.0, 1.0))
     assert from_place(np.zeros((0, 2)), (0.0, 0.0))[1] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("own", "for_whom", "waiting", "drives"),
+    [
+        ("anne", "carl", {"carl": "anne"}, True),
+        ("carl", "anne", {"anne": "carl"}, False),
+        ("anne", "carl", {}, False),
+        ("anne", "carl", {"carl": "bert"}, False),
+        ("anne", "carl", {"carl": "bert", "bert": "anne"}, True),
+        ("bert", "anne", {"anne": "carl", "carl": "bert"}, False),
+        ("anne", "carl", {"carl": "bert", "bert": "carl"}, False),
+    ],
+)
+def test_of_those_who_wait_for_each_other_the_first_by_name_drives(own, for_whom, waiting, drives):
+    assert is_first_of_circle(own, for_whom, waiting) is drives

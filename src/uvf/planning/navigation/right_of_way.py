@@ -1,9 +1,10 @@
 """Who drives first through a passage that is too narrow for two: the others wait where they are not in the way.
 
-Each vehicle decides by itself from the same facts, where everybody is and the path that everybody follows; so all decide alike.
+Each vehicle decides by itself from the same facts, where everybody is and the path that everybody follows; so all decide alike. Where
+each stands in the passage of another, they would wait for each other without end: then the first by name drives, and steers past.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -47,6 +48,18 @@ def give_way(own: Traveller, clearance: Floats, others: Sequence[Traveller]) -> 
         _wait(own, (along, clearance), other._replace(path=resample(first_part(other.path, LOOKED)))) for other in others if len(other.path)
     ]
     return min((wait for wait in waits if wait is not None), default=None)
+
+
+def is_first_of_circle(own: str, for_whom: str, waiting: Mapping[str, str]) -> bool:
+    """Whether vehicles wait for each other in a circle of which ``own`` is the first by name, if it waits ``for_whom``.
+
+    waiting: for whom each of the others says that it waits.
+    """
+    circle, name = [own], for_whom
+    while name and name not in circle:
+        circle.append(name)
+        name = waiting.get(name, "")
+    return name == own == min(circle)
 
 
 def _wait(own: Traveller, way: tuple[Floats, Floats], other: Traveller) -> Wait | None:
