@@ -4,15 +4,17 @@ from typing import Annotated
 
 import numpy as np
 from msgspec import Meta
+from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
 from schemas import topics
-from schemas.messages import Event, Grid, LaserScan, MapReply, MapRequest
+from schemas.messages import Event, Grid, LaserScan, MapReply, MapRequest, NavStatus, PoseInFrame
 from services.slam.waiting_beams import RayBundle, WaitingBeams
 from uvf.models.keys import key
 from uvf.models.params import Params
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput, nearest
-from uvf.runtime.contract.declaration import Reads, Writes, every, frames, optional, replies, request, topic
+from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, every, frames, optional, replies, request, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import scan_rays, seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer
@@ -20,7 +22,11 @@ from uvf.runtime.messages.height_grids import heights_message, heights_of
 from uvf.sensors.fitted import sweeping_of
 from uvf.slam.elevation.elevation_map import Elevation, ElevationMap, MapFull
 
+Floats = NDArray[np.float64]
+
 LAYER = "heights"
+LARGEST = 2.5  # m, of the radius that a vehicle may say it has
+ABOUT = 0.6  # m about who drives, as far as it may have moved since it told where it is
 
 
 class ElevationParams(Params, frozen=True):
@@ -38,9 +44,11 @@ class ElevationService(Service):
     hz = 5.0
 
     class Inputs(Reads):
-        """Scans, frames, and requests."""
+        """Scans, frames, who drives below, and requests."""
 
         scan: list[LaserScan] = optional(every(topics.SCAN))
+        team: dict[str, PoseInFrame] = each_vehicle(topics.POSE)
+        team_nav: dict[str, NavStatus] = each_vehicle(topics.NAV_STATUS)
         frames: FrameBuffer = frames()
         get: list[MapRequest] = request(topics.GET_MAP)
 
@@ -76,7 +84,7 @@ class ElevationService(Service):
             ends[(ranges < self._lidar.range_min) | (ranges > self._lidar.range_max)] = np.nan
             bundle = RayBundle(ends, self._lidar.range_max)
             self._waiting.add(sweeping_of(self._lidar).parts(len(sweep.ranges), seconds(sweep.timestamp)), sweep.frame_id, bundle)
-        out = self.Outputs(events=self._insert(t, now.frames))
+        out = self.Outputs(events=self._insert(t, now.frames, _drivers(now)))
         if self._changed and t - self._published_at >= self.params.map_period - 1e-9:
             self._changed, self._published_at = False, t
             elevation = self._map.elevation()
@@ -95,10 +103,12 @@ class ElevationService(Service):
         except (BadInput, MapFull):
             self._map = ElevationMap(self.params.resolution, self.params.gate)
 
-    def _insert(self, t: float, frames: FrameBuffer) -> list[Event]:
+    def _insert(self, t: float, frames: FrameBuffer, drivers: Floats) -> list[Event]:
+        """drivers: (n, 3) x, y, radius [m, world] of what is no ground, for it drives there."""
         try:
             for placed in self._waiting.placed(t, frames):
-                self._map.insert(placed.ends)
+                on_them = (cdist(placed.ends[:, :2], drivers[:, :2]) < drivers[:, 2]).any(axis=1)
+                self._map.insert(placed.ends[~on_them])
                 self._changed = True
         except MapFull as error:
             self._waiting.clear()
@@ -124,6 +134,16 @@ class ElevationService(Service):
             return []
         self._told.add(text)
         return [Event(timestamp=stamp(t), severity=Event.WARNING, text=text, cause=cause, source=self.name)]
+
+
+def _drivers(now: ElevationService.Inputs) -> Floats:
+    """Ground vehicles (n, 3): x, y, and how far about them [m, world] scans show them; they alone have a planner."""
+    found = [
+        (now.team[name].pose.position.x, now.team[name].pose.position.y, min(max(said.radius, 0.0), LARGEST) + ABOUT)
+        for name, said in sorted(now.team_nav.items())
+        if name in now.team
+    ]
+    return np.array(found, dtype=np.float64).reshape(-1, 3)
 
 
 def _message(elevation: Elevation, t: float) -> Grid:

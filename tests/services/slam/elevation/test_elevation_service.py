@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from launch import catalogue
-from schemas.messages import LaserScan, MapRequest
+from schemas.messages import LaserScan, MapRequest, NavStatus, PoseInFrame
 from services.slam.elevation.build import build
 from services.slam.elevation.elevation_service import ElevationParams, ElevationService
 from tests.runtime.stepping import recall, stepped
@@ -14,7 +14,7 @@ from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.sensors import Lidar, Mount
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.log.bounds import PAYLOAD_MOST
-from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.convert import planar_pose, stamp
 from uvf.runtime.messages.frames import FrameBuffer
 from uvf.runtime.messages.height_grids import heights_message, heights_of
 from uvf.runtime.messages.validation import error_in
@@ -67,6 +67,22 @@ def test_sweeps_become_heights(service):
     known = np.isfinite(ground)
     assert set(np.round(ground[known], 3).tolist()) == {0.0, 2.0} and np.array_equal(top[known], ground[known])
     assert grid.frame_id == "world" and grid.pose.position.y == pytest.approx(-6.25, abs=0.3)
+
+
+def test_who_drives_below_is_no_ground_and_what_stands_there_beside_it_is(service):
+    """The rover stands on the step of 2 m; nobody else knows that one is there."""
+    rover = {"anne": PoseInFrame(pose=planar_pose(4.0, 2.0, 0.0))}, {"anne": NavStatus(radius=0.3)}
+    for who, heights in ((rover, {0.0, 2.0}), (({}, {}), {0.0, 2.0})):
+        one = ElevationService(LIDAR, ElevationParams(map_period=0.1))
+        for t in (0.0, 0.2, 0.4, 0.6):
+            team, nav = who
+            seen = [sweep(t, HEIGHT - (2.0 if t == 0.4 else 0.0))]
+            out = stepped(one, t, scan=seen, frames=flight([0.0, 0.2, 0.4, 0.6, 0.8]), team=team, team_nav=nav)
+        grid = out["heights"]
+        _, ground = heights_of(grid)
+        assert set(np.round(ground[np.isfinite(ground)], 3).tolist()) == heights
+        row, column = (int((c - o) / grid.cell_size.x) for c, o in ((2.0, grid.pose.position.y), (4.0, grid.pose.position.x)))
+        assert np.isfinite(ground[row, column]) == (not team)
 
 
 def test_the_map_of_an_area_is_given_to_who_asks(service):
