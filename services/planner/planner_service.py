@@ -104,6 +104,8 @@ class PlannerService(Service):
         changed = self._ground.look(t, now.map, now.scan, OtherReadings(now.depth, now.info, now.sonar, now.contact))
         self._team.hear(now.team, now.team_nav, now.team_path)
         self._book.team = self._team.places
+        if self._ended_at is not None and t - self._ended_at >= self.params.wait_at_goal:
+            self._go_on()
         goal_replies, goal = self._book.take_goals(here, now.goal, now.status)
         route_replies, route = self._book.take_routes(here, now.route, now.status)
         follow_replies, follow = self._book.take_follows(now.follow, now.status)
@@ -196,7 +198,7 @@ class PlannerService(Service):
             self._tell(t, what, f"asked by {sources[-1] or 'unknown'}")
 
     def _go_on(self) -> None:
-        """A person's goal was reached, or cancelled, a while ago."""
+        """A person's goal was reached, or cancelled, a while ago: what is left of the errand, or the job, is begun in this step."""
         if self._ending == NavStatus.REACHED:
             self._book.go_on(reached=True)
         else:
@@ -231,9 +233,8 @@ class PlannerService(Service):
     def _aim(self, t: float, here: Pose2, changed: bool) -> None:
         """Where the job leads now."""
         if self._ended_at is not None:
-            if t - self._ended_at >= self.params.wait_at_goal:
-                self._go_on()
-        elif self._job == IDLE:
+            return
+        if self._job == IDLE:
             self._navigator.cancel(t)
             self._reason = "no job"
         elif self._job.leader:

@@ -52,6 +52,27 @@ def test_a_patrol_begins_again_until_it_is_cancelled():
     assert bench.said["nav_status"].job == "idle"
 
 
+def test_between_two_places_of_a_route_it_is_never_without_its_job_nor_already_there():
+    """Who waits for the end of the route, as the executive does, would take that for something else, or for the end."""
+    bench = Bench().step(route=[asked(RouteRequest.WAYPOINTS, *PLACES)])
+    arrive(bench, PLACES[0])
+    said = []
+    for _ in range(WAIT):
+        status = bench.step().said["nav_status"]
+        said.append((status.job, status.route_at, status.state))
+    assert set(said) == {("waypoints", 0, NavStatus.REACHED), ("waypoints", 1, NavStatus.DRIVING)}
+
+
+def test_a_route_asked_for_in_the_step_in_which_the_wait_at_a_goal_ends_is_not_lost():
+    for early in range(4):
+        bench = Bench().step(route=[asked(RouteRequest.WAYPOINTS, PLACES[0])])
+        arrive(bench, PLACES[0])
+        bench.step(WAIT - 4 + early)
+        bench.step(route=[asked(RouteRequest.WAYPOINTS, PLACES[1])])
+        bench.step(2)
+        assert (bench.said["nav_status"].job, going_to(bench)) == ("waypoints", PLACES[1])
+
+
 def test_a_patrol_can_be_cancelled_while_it_stands_at_a_place():
     bench = Bench().step(route=[asked(RouteRequest.PATROL, *PLACES[:2])])
     arrive(bench, PLACES[0])
