@@ -1,6 +1,7 @@
 """The cameras of a mission: one instance for all of them."""
 
 from contextlib import suppress
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -9,10 +10,13 @@ from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
 from uvf.models.aircraft.shape import aircraft_shape
 from uvf.models.scenario import MissionVehicle, Scenario
+from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.model import engine_urdf
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.vehicle.sensors import Camera
-from uvf.models.world.geometry import solids
+from uvf.models.world.file import TERRAIN, WorldFile
+from uvf.models.world.geometry import solids, things
+from uvf.models.world.terrain_picture import raised_mesh, with_ground_of
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.contract.instances import ServiceInstance
 
@@ -28,7 +32,7 @@ def build(site: Scenario) -> list[ServiceInstance]:
     if not cameras:
         return []
     looks = {name: look_at(member.folder, member.file) for name, member in site.members.items()}
-    things = solids(site.world)
+    world, rendered = with_ground_of(site.world), _rendered(site.world)
 
     @cache
     def look_of(model: str) -> Look | None:
@@ -38,9 +42,17 @@ def build(site: Scenario) -> list[ServiceInstance]:
 
     def make() -> SimCamera:
         fitted = [FittedCamera(name, camera, site.rng(name, kind), OUTPUTS[kind]) for (name, kind), camera in cameras.items()]
-        return SimCamera(BulletRenderer(site.world, things, looks), fitted, look_of)
+        return SimCamera(BulletRenderer(world, rendered, looks), fitted, look_of)
 
     return [ServiceInstance(SimCamera, make, writes_for=tuple(dict.fromkeys(name for name, _ in cameras)))]
+
+
+def _rendered(world: WorldFile) -> list[Solid]:
+    """What is rendered of a world, of its terrain what stands out of the ground."""
+    if world.terrain is None:
+        return solids(world)
+    raised = raised_mesh(world.terrain)
+    return [*things(world), *(replace(solid, mesh=raised) for solid in solids(world) if solid.name == TERRAIN and raised is not None)]
 
 
 def _cameras(member: MissionVehicle) -> dict[str, Camera]:
