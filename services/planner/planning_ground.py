@@ -52,6 +52,7 @@ class PlanningGround:
         for message in poses:
             self.here = compose(self._map_from_world, pose2_of(message.pose))
             self._sensors.placer.move(seconds(message.timestamp), self.here)
+            self.routes.drive(self.here[:2])
 
     def keep_out(self, grid: Grid | None) -> None:
         """Takes what is drawn over the map."""

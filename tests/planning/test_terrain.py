@@ -7,6 +7,7 @@ from uvf.maths.se2 import Pose2
 from uvf.planning.costmap.shared_map import SharedMap
 from uvf.planning.costmap.terrain import TerrainLimits, terrain_obstacles
 
+NOWHERE = np.zeros((0, 2))
 LIMITS = TerrainLimits(step=0.3, slope=0.35)
 R = 0.25
 
@@ -48,7 +49,7 @@ def test_the_map_below_shows_where_the_own_one_does_not_and_both_fit_together():
     shared = np.zeros((8, 8), dtype=np.int8)
     shared[7, 7] = 100  # from 2.5 to 3 m in both directions
     own = np.array([[-1, 0], [100, -1]], dtype=np.int8)
-    cells, (resolution, (x, y)) = SharedMap(shared, 0.5, Pose2(-1.0, -1.0, 0.0), outranks=True).below(own, (0.25, (4.0, 0.0)))
+    cells, (resolution, (x, y)) = SharedMap(shared, 0.5, Pose2(-1.0, -1.0, 0.0), outranks=True).below(own, (0.25, (4.0, 0.0)), NOWHERE, 0.3)
     assert (resolution, x, y) == (0.25, -1.0, -1.0) and cells.shape == (16, 22)
 
     def at(px, py):
@@ -62,7 +63,7 @@ def test_a_map_that_is_turned_lies_where_it_belongs():
     shared = np.full((4, 4), -1, dtype=np.int8)
     shared[0, 3] = 100  # x 3..4, y 0..1 in its own frame; turned by a quarter: x -1..0, y 3..4
     own = np.zeros((1, 1), dtype=np.int8)
-    cells, (_, (x, y)) = SharedMap(shared, 1.0, Pose2(0.0, 0.0, np.pi / 2), outranks=False).below(own, (0.5, (0.0, 0.0)))
+    cells, (_, (x, y)) = SharedMap(shared, 1.0, Pose2(0.0, 0.0, np.pi / 2), outranks=False).below(own, (0.5, (0.0, 0.0)), NOWHERE, 0.3)
     rows, columns = np.nonzero(cells == 100)
     assert ((columns + 0.5) * 0.5 + x).mean() == pytest.approx(-0.5) and ((rows + 0.5) * 0.5 + y).mean() == pytest.approx(3.5)
 
@@ -70,7 +71,7 @@ def test_a_map_that_is_turned_lies_where_it_belongs():
 @pytest.mark.parametrize("outranks", [True, False])
 def test_only_obstacles_seen_from_above_count_more_than_own_free_ground(outranks):
     shared, own = np.full((2, 2), 100, dtype=np.int8), np.zeros((2, 2), dtype=np.int8)
-    cells, _ = SharedMap(shared, 0.5, Pose2(0.0, 0.0, 0.0), outranks=outranks).below(own, (0.5, (0.0, 0.0)))
+    cells, _ = SharedMap(shared, 0.5, Pose2(0.0, 0.0, 0.0), outranks=outranks).below(own, (0.5, (0.0, 0.0)), NOWHERE, 0.3)
     assert (cells == (100 if outranks else 0)).all()
 
 
@@ -85,5 +86,5 @@ def test_a_wall_one_cell_thick_is_none_the_less_there_in_larger_cells(column):
     fine = np.zeros((80, 80), dtype=np.int8)
     fine[:, column] = 100
     shared = SharedMap(fine, 0.05, Pose2(0.0, 0.0, 0.0), outranks=False)
-    both, _ = shared.below(np.full((10, 10), -1, dtype=np.int8), (0.1, (0.0, 0.0)))
+    both, _ = shared.below(np.full((10, 10), -1, dtype=np.int8), (0.1, (0.0, 0.0)), NOWHERE, 0.3)
     assert (both == 100).sum() == 40 and (both[:, 20] == 100).all()

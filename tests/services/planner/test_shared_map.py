@@ -7,7 +7,7 @@ import pytest
 from schemas.messages import Grid
 from tests.services.planner.planner_bench import START, Bench, asked
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose
-from uvf.runtime.messages.height_grids import heights_message
+from uvf.runtime.messages.height_grids import heights_message, heights_of
 
 SIDE = 0.25
 BEYOND = (7.0, 1.0)
@@ -59,6 +59,28 @@ def test_a_low_step_is_driven_over():
     shared = corridor(0.1)
     led = bench().step(2, shared=shared).step(goal=[asked(*BEYOND)], shared=shared).step(2, shared=shared)
     assert abs(led.path[:, 1] - 1.0).max() < 0.2
+
+
+def test_who_stands_under_a_crown_gets_out_the_way_that_it_came_and_others_do_not_drive_there():
+    """A roof of 1.4 m about (2, 1), which the lidar does not see; from outside the vehicle has driven to its middle."""
+    shared = corridor()
+    top, ground = (part.copy() for part in heights_of(shared))
+    rows, columns = np.indices(top.shape)
+    x, y = rows * SIDE - 2.0, START[0] - (START[0] - 3.0 + (columns + 0.5) * SIDE)
+    top[np.hypot(x + SIDE / 2 - 2.0, y - 1.0) < 0.8] = 4.0
+    roofed = heights_message(top, ground, SIDE, (START[0] - 3.0, START[1] - 2.0), 0.0)
+    come = bench()
+    for along in np.linspace(0.5, 2.0, 16):
+        come.here = (float(along), 1.0)
+        come.step()
+    come.step(2, shared=roofed).step(goal=[asked(0.5, 1.0)], shared=roofed)
+    assert come.said["goal"][0].accepted, come.said["goal"][0].reason
+    come.step(2, shared=roofed)
+    assert come.path[-1] == pytest.approx((0.5, 1.0), abs=0.1) and abs(come.path[:, 1] - 1.0).max() < 0.15
+    other = bench()
+    other.here = (0.5, 1.0)
+    other.step(2, shared=roofed).step(goal=[asked(3.5, 1.0)], shared=roofed).step(2, shared=roofed)
+    assert not len(other.path) or np.hypot(*(other.path - (2.0, 1.0)).T).min() > 0.8
 
 
 def test_a_grid_of_another_ground_vehicle_serves_as_well():

@@ -9,23 +9,30 @@ from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.planning.costmap.costmap import Frame
 
 Cells = NDArray[np.int8]
+Floats = NDArray[np.float64]
 
 UNKNOWN, OCCUPIED = -1, 65
 """Values of a map: nothing is known; per cent, from which on a cell is an obstacle."""
+BESIDE = 2
+"""Cells beside those that a vehicle has covered which are taken for free: a way needs some room."""
 
 
 class SharedMap:
     """Cells (rows, columns) of -1 unknown, 0..100 per cent, of side ``resolution`` [m], whose first corner lies at ``map_from_cells``.
 
-    outranks: whether its obstacles count where the vehicle's own map shows free ground, too: a lidar looks over a ditch.
+    outranks: whether its obstacles count where the vehicle's own map shows free ground, too: a lidar looks over a ditch. Not where the
+    vehicle has driven: seen from above, the crown of a tree is an obstacle, and who stands under it would not get out.
     """
 
     def __init__(self, cells: Cells, resolution: float, map_from_cells: Pose2, *, outranks: bool) -> None:
         self._cells, self._resolution, self._map_from_cells, self._outranks = cells, resolution, map_from_cells, outranks
         self._drawn: tuple[Cells, Frame] | None = None
 
-    def below(self, cells: Cells, frame: Frame) -> tuple[Cells, Frame]:
-        """The vehicle's own map, its resolution and origin [m], with this one where it shows nothing; as large as both together."""
+    def below(self, cells: Cells, frame: Frame, driven: Floats, radius: float) -> tuple[Cells, Frame]:
+        """The vehicle's own map, its resolution and origin [m], with this one where it shows nothing; as large as both together.
+
+        driven: (n, 2) [m] where a vehicle of this ``radius`` [m] has been, in its own map frame.
+        """
         resolution, own_corner = frame
         if self._drawn is None or self._drawn[1][0] != resolution:
             self._drawn = self._as_cells_of(frame)
@@ -38,7 +45,7 @@ class SharedMap:
         own = both[row - bottom : row - bottom + cells.shape[0], column - left : column - left + cells.shape[1]]
         wins = cells != UNKNOWN
         if self._outranks:
-            wins &= own < OCCUPIED
+            wins &= (own < OCCUPIED) | _covered(driven, radius, frame, cells.shape)
         own[wins] = cells[wins]
         x, y = own_corner[0] + (left - column) * resolution, own_corner[1] + (bottom - row) * resolution
         return both, (resolution, (x, y))
@@ -75,3 +82,16 @@ class SharedMap:
         column, row = np.floor((places - corner) / resolution).astype(np.int64).T
         np.maximum.at(cells, (row, column), self._cells[obstacles[:, 0], obstacles[:, 1]])
         return cells, (resolution, corner)
+
+
+def _covered(driven: Floats, radius: float, frame: Frame, shape: tuple[int, int]) -> NDArray[np.bool_]:
+    """Cells (rows, columns) that a vehicle of this radius [m] has covered at ``driven`` (n, 2) [m], and ``BESIDE`` about them."""
+    resolution, corner = frame
+    reach = ceil(radius / resolution) + BESIDE
+    steps = np.array([(row, column) for row in range(-reach, reach + 1) for column in range(-reach, reach + 1)])
+    steps = steps[np.hypot(*steps.T) * resolution <= radius + BESIDE * resolution]
+    at = np.floor((driven - corner) / resolution).astype(np.int64)[:, ::-1]
+    cells = (at[:, None] + steps).reshape(-1, 2)
+    covered = np.zeros(shape, dtype=np.bool_)
+    covered[tuple(cells[((cells >= 0) & (cells < shape)).all(axis=1)].T)] = True
+    return covered

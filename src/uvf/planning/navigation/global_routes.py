@@ -1,6 +1,7 @@
 """Routes of the global planner on a map that may be wrong, with what the sensors see now on it."""
 
-from math import ceil
+from collections import deque
+from math import ceil, dist
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,10 @@ from uvf.planning.navigation.routes import KnownFree, cells_of, one_after_the_ot
 Floats = NDArray[np.float64]
 Cells = NDArray[np.int8]
 
+Point = tuple[float, float]
+
 AROUND = 5.5  # m
+DRIVEN_EVERY, DRIVEN_MOST = 0.1, 10_000  # m between two places at which the vehicle has been, and how many of them are kept
 OCCUPIED = 65  # per cent, from which on a cell of the map is an obstacle
 WALL = np.ones((3, 3), dtype=np.bool_)
 
@@ -48,6 +52,12 @@ class GlobalRoutes:
         self.shared_is_too_large = False
         """Whether another vehicle's map is left out, because both maps together have too many cells."""
         self._shown: bytes | None = None
+        self._driven: deque[Point] = deque(maxlen=DRIVEN_MOST)
+
+    def drive(self, here: Point) -> None:
+        """The vehicle is at ``here`` [m]."""
+        if not self._driven or dist(here, self._driven[-1]) >= DRIVEN_EVERY:
+            self._driven.append(here)
 
     def keep_out(self, mask: ZoneMask, mask_from_map: Pose2) -> None:
         """From now on the vehicle is not to drive where the mask says so."""
@@ -67,12 +77,13 @@ class GlobalRoutes:
         if self._shared is not None and cells.size:
             self.shared_is_too_large = self._shared.cells_with(cells.shape, frame) > MOST_CELLS
             if not self.shared_is_too_large:
-                cells, frame = self._shared.below(cells, frame)
+                radius = self._planner.body.footprint.circumscribed_radius
+                cells, frame = self._shared.below(cells, frame, np.array(self._driven).reshape(-1, 2), radius)
         cells = self._kept_out(cells, frame)
         self._map = cells, frame
         self._walls = ndimage.binary_dilation(cells >= OCCUPIED, WALL)
 
-    def look(self, here: tuple[float, float]) -> bool:
+    def look(self, here: Point) -> bool:
         """Gives the planner the map with what is seen from ``here`` [m]; whether that is another one than before."""
         if self._map is None:
             return False
@@ -95,7 +106,7 @@ class GlobalRoutes:
         route = one_after_the_other(self._between, pose, goal)
         return route if self._planner.costs is None else self._known_free.judged(route, self._planner.costs)
 
-    def _between(self, here: tuple[float, float], there: tuple[float, float]) -> Route:
+    def _between(self, here: Point, there: Point) -> Route:
         planned = self._planner.plan(here, there, self.allow_unknown)
         return Route(planned.path, planned.failure, planned.reason)
 
