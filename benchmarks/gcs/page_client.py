@@ -24,7 +24,7 @@ BRIDGE = re.compile(r"data-bridge='([^']+)'")
 class PageClient:
     """One page. vehicle: the one on show; pause: s that it takes over each batch, as a slow one does.
 
-    ages: how old [s] each position was on arrival; received: bytes; pictures: of the camera.
+    ages: how old [s] each position was on arrival; received: bytes; pictures: of the camera; moved: positions of whatever is in the scene.
     """
 
     port: int
@@ -34,6 +34,7 @@ class PageClient:
     ages: list[float] = field(default_factory=list)
     received: int = 0
     pictures: int = 0
+    moved: int = 0
     joined: float = 0.0
     _count: int = 0
     _bridge: str = ""
@@ -41,7 +42,7 @@ class PageClient:
 
     def forget(self) -> None:
         """Counts anew from here."""
-        self.ages, self.received, self.pictures = [], 0, 0
+        self.ages, self.received, self.pictures, self.moved = [], 0, 0, 0
 
     async def look(self, seconds: float) -> None:
         """Joins, and looks for so long."""
@@ -65,6 +66,7 @@ class PageClient:
     async def _take(self, socket: websockets.ClientConnection, message: Mapping[str, Any]) -> None:
         kind = message["type"]
         if kind == "SetPositionMessage":
+            self.moved += 1
             circle = self.circles.get(message["name"].removeprefix("/vehicles/"))
             if circle is not None:
                 self.ages.append(circle.age(*message["position"][:2], time.time()))
