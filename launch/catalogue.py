@@ -73,7 +73,7 @@ def hosts(site: Scenario, kinds: Sequence[Kind], vehicle: str | None = None) -> 
     made: list[ServiceInstance] = []
     for each in kinds:
         build: Build = importlib.import_module(each.build).build
-        built = [_with_roles(site, host) for host in build(site)]
+        built = [_in_mission(site, host) for host in build(site)]
         wanted = [host for host in built if vehicle is None or host.vehicle == vehicle]
         if built and not wanted:
             raise BadInput(f"{each.name} has nothing of its own for '{vehicle}': it serves all vehicles together; leave --vehicle out")
@@ -81,6 +81,7 @@ def hosts(site: Scenario, kinds: Sequence[Kind], vehicle: str | None = None) -> 
     return made
 
 
-def _with_roles(site: Scenario, host: ServiceInstance) -> ServiceInstance:
-    """The mission says which vehicle is whose leader."""
-    return replace(host, roles=site.members[host.vehicle].entry.roles) if host.vehicle else host
+def _in_mission(site: Scenario, host: ServiceInstance) -> ServiceInstance:
+    """The mission says which vehicle is whose leader, and whose link is cut."""
+    roles = site.members[host.vehicle].entry.roles if host.vehicle else host.roles
+    return replace(host, roles=roles, faults=tuple(site.mission.faults))

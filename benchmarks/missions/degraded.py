@@ -45,6 +45,7 @@ ON_GROUND = {
     "encoders dead": fault("wheels"),
     "a wheel on ice": fault("left_grip"),
     "a wheel slipping": fault("left_grip", "bias", -0.9),
+    "link cut": fault("link"),
     "battery low": fault("battery", "bias", -0.88),
     "battery empty": fault("battery", "bias", -0.99),
 }
@@ -52,6 +53,8 @@ IN_THE_AIR = {
     "GNSS lost": fault("gnss"),
     "pressures lost": fault("air_data"),
     "battery low": fault("battery", "bias", -0.75),
+    "link cut": fault("link"),
+    "wind that rises": f"wind={{steady: [-3.0, 1.5, 0.0], changes: [{{at: {AT}, over: 20, steady: [-19.0, 6.0, 0.0]}}]}}",
     "wind beyond limits": "wind={steady: [-19.0, 6.0, 0.0]}",
 }
 FLOWN_BY_AUTOPILOT = (Mode.MODE_HOLD, Mode.MODE_RETURN, Mode.MODE_LAND, Mode.MODE_MISSION, Mode.MODE_FOLLOW)

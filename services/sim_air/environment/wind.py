@@ -37,21 +37,32 @@ class AirMass:
         """span: of the wing, m."""
         self._wind = wind
         self._steady = np.array(wind.steady)
+        self._changes = list(wind.changes)
+        self._t = 0.0
         self._turbulence = Turbulence(span, rng) if wind.turbulence else None
         self._entered = [0.0] * len(wind.gusts)  # m of air flown since the beginning of each gust that has a time
-        self.is_steady = not (wind.shear or wind.gusts or wind.turbulence)
+        self.is_steady = not (wind.shear or wind.changes or wind.gusts or wind.turbulence)
 
     def blow(self, steady: Floats) -> None:
-        """Takes another mean wind (3,) [m/s, world], without shear."""
-        self._steady = steady
+        """Takes another mean wind (3,) [m/s, world], without shear, which stays."""
+        self._steady, self._changes = steady, []
 
     def mean(self, height: float) -> Floats:
-        """Mean wind (3,) [m/s, world] at ``height`` [m above the ground], without gusts."""
-        shear = self._wind.shear
-        return self._steady if shear is None else self._steady * _growth(shear, height)
+        """Mean wind (3,) [m/s, world] at ``height`` [m above the ground] in the last step, without gusts."""
+        shear, steady = self._wind.shear, self._steady_now()
+        return steady if shear is None else steady * _growth(shear, height)
+
+    def _steady_now(self) -> Floats:
+        steady = self._steady
+        for change in self._changes:
+            if self._t >= change.at:
+                share = 1.0 if change.over == 0.0 else min((self._t - change.at) / change.over, 1.0)
+                steady = steady + share * (np.array(change.steady) - steady)
+        return steady
 
     def step(self, t: float, dt: float, flight: AirRelativeState) -> AirMotion:
         """Motion of the air at the aircraft at ``t`` [s], ``dt`` [s] after the step before."""
+        self._t = t
         velocity, rates = self.mean(flight.height), CALM
         for i, gust in enumerate(self._wind.gusts):
             velocity = velocity + self._share(i, gust, t, flight.airspeed * dt, flight) * np.array(gust.velocity)

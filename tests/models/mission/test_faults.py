@@ -72,6 +72,7 @@ def test_a_bias_is_added_in_its_unit():
         (Fault("two", "gnss", "lost", at=1.0), "no vehicle 'two'"),
         (Fault("one", "gnss", "lost", at=1.0, until=1.0), "is not after at"),
         (Fault("one", "scan", "bias", at=1.0, size=1.0), "takes no bias"),
+        (Fault("one", "link", "frozen", at=1.0), "a link may be lost"),
         (Fault("one", "pitot", "bias", at=1.0), "needs a size"),
         (Fault("one", "left_grip", "frozen", at=1.0), "may be lost, or have a bias from -1 to 0"),
         (Fault("one", "left_grip", "bias", at=1.0, size=-1.5), "may be lost, or have a bias from -1 to 0"),

@@ -58,6 +58,7 @@ def test_a_severity_alone_has_the_standards_wind_at_20_feet(tmp_path):
         ("wind: {turbulence: {severity: heavy}}", "heavy"),
         ("wind: {shear: {law: logaritmic}}", "logaritmic"),
         ("wind: {shear: {law: logarithmic, roughness: 1.0, height: 2.0}}", "within the roughness"),
+        ("wind: {changes: [{at: 10, steady: [1, 0, 0], over: 5}, {at: 12, steady: [0, 0, 0]}]}", "before the change ahead of it has ended"),
         ("wind: {gusts: [{velocity: [1.0, 0.0, 0.0], length: 50.0}]}", "either the time"),
         ("wind: {gusts: [{velocity: [1.0, 0.0, 0.0], length: 50.0, time: 1.0, place: [0.0, 0.0]}]}", "either the time"),
         ("wind: {steady: [300.0, 0.0, 0.0]}", "100"),

@@ -25,8 +25,11 @@ Part = Literal[
     "elevator",
     "rudder",
     "throttle",
+    "link",
 ]
-WITHOUT_VALUE = ("scan", "wheels")
+LINK = "link"
+"""The radio link between a vehicle and what does not run aboard it: other vehicles, tasks, the page."""
+WITHOUT_VALUE = ("scan", "wheels", LINK)
 """Parts of which no single value can be off."""
 GRIPS = ("left_grip", "right_grip")
 """How well a wheel holds on to the ground."""
@@ -40,11 +43,12 @@ class Fault(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """lost: nothing comes, or where the part shares its message, zero. frozen: as it was at ``at``. bias: off by ``size``."""
 
     vehicle: Annotated[str, plain("Vehicle that has the fault.")]
-    part: Annotated[Part, plain("Sensor, servo or grip of a wheel that fails.")]
+    part: Annotated[Part, plain("Sensor, servo, grip of a wheel or radio link that fails.")]
     kind: Annotated[
         Literal["lost", "frozen", "bias"],
         plain(
-            "`lost`: no reading comes, or zero where the part shares its message; a wheel slides as on ice. `frozen`: the reading "
+            "`lost`: no reading comes, or zero where the part shares its message; a wheel slides as on ice; a vehicle and the "
+            "rest of the team and the tasks hear nothing of each other. `frozen`: the reading "
             "of the time `at`. `bias`: off by `size`."
         ),
     ]
@@ -73,6 +77,8 @@ def check_faults(faults: Sequence[Fault], vehicles: Mapping[str, object], place:
             raise BadInput(f"{place.at(i, 'until')}: {fault.until:g} s is not after at, {fault.at:g} s")
         if fault.part in GRIPS and (fault.kind == "frozen" or not -1.0 <= fault.size <= 0.0):
             raise BadInput(f"{place.at(i)}: a {fault.part} may be lost, or have a bias from -1 to 0")
+        if fault.part == LINK and fault.kind != "lost":
+            raise BadInput(f"{place.at(i, 'kind')}: a link may be lost, and come back at 'until'")
         if fault.kind == "bias" and fault.part in WITHOUT_VALUE:
             raise BadInput(f"{place.at(i, 'kind')}: {fault.part} takes no bias; it may be lost or frozen")
         if fault.kind == "bias" and fault.size == 0:

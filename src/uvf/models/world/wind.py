@@ -1,6 +1,7 @@
 """``wind:`` of a world or a mission: steady wind with shear, single gusts and turbulence, as data."""
 
 import math
+from itertools import pairwise
 from typing import Annotated, Literal
 
 import msgspec
@@ -57,11 +58,20 @@ class TurbulenceFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return W20[self.severity] if self.w20 is None else self.w20
 
 
+class WindChange(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The steady wind becomes another one, in a straight line over some time."""
+
+    at: Annotated[float, Meta(ge=0, le=1e6), key("s", "Simulation time at which it begins to change.")]
+    steady: Annotated[Velocity, plain("Velocity of the air that it comes to [m/s], ENU, pointing where the wind blows to.")]
+    over: Annotated[float, Meta(ge=0, le=1e6), key("s", "Time that the change takes.")] = 0.0
+
+
 class Wind(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Velocity of the air [m/s], ENU, pointing where the wind blows to."""
 
     steady: Annotated[Velocity, plain("Velocity of the air [m/s], ENU, pointing where the wind blows to.")] = (0.0, 0.0, 0.0)
     shear: Annotated[Shear | None, plain("How the steady wind grows with height.")] = None
+    changes: Annotated[list[WindChange], plain("Other steady winds that come up later, in the order of their times.")] = []
     gusts: Annotated[list[Gust], plain("Single gusts, one minus cosine.")] = []
     turbulence: Annotated[TurbulenceFile | None, plain("Dryden turbulence.")] = None
 
@@ -71,6 +81,9 @@ def check_wind(wind: Wind, place: FileLocation) -> None:
     shear = wind.shear
     if shear is not None and shear.law == "logarithmic" and shear.height <= math.e * shear.roughness:
         raise BadInput(f"{place.at('shear')}: height {shear.height:g} m is within the roughness of {shear.roughness:g} m; raise it")
+    for i, (before, change) in enumerate(pairwise(wind.changes), start=1):
+        if change.at < before.at + before.over:
+            raise BadInput(f"{place.at('changes', i, 'at')}: {change.at:g} s is before the change ahead of it has ended")
     for i, gust in enumerate(wind.gusts):
         if (gust.time is None) == (gust.place is None):
             raise BadInput(f"{place.at('gusts', i)}: give either the time at which it is met or the place where it stands")

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+from uvf.models.mission.faults import Fault
 from uvf.models.scenario import Scenario
 from uvf.runtime.contract.service import Service
 
@@ -12,7 +13,7 @@ from uvf.runtime.contract.service import Service
 class ServiceInstance:
     """One service instance: how to make it afresh (at start and after each reset), and for which vehicle.
 
-    writes_for: the vehicles about which a service of the whole world writes.
+    writes_for: the vehicles about which a service of the whole world writes; faults: of the mission, of which those of links count here.
     """
 
     service: type[Service]
@@ -20,6 +21,7 @@ class ServiceInstance:
     vehicle: str | None = None
     roles: dict[str, str] | None = None
     writes_for: tuple[str, ...] = ()
+    faults: tuple[Fault, ...] = ()
 
 
 class Build(Protocol):

@@ -12,12 +12,13 @@ from google.protobuf.message import Message
 from schemas import topics
 from schemas.messages import Event, VehicleStatus
 from schemas.topics import PARAM, SYSTEM, Qos, Request, Topic
-from uvf.runtime.bus.interface import Bus, Publisher, Query
+from uvf.runtime.bus.interface import Bus, Publisher, Query, Sample
 from uvf.runtime.bus.wire import Malformed, decode
 from uvf.runtime.contract.bulkhead import FAILURES, WINDOW, Bulkhead
 from uvf.runtime.contract.declaration import Called, Frames, Input, StopInput, Writes, declared_in
 from uvf.runtime.contract.inbox import AHEAD_MOST, EVERY_DEPTH, InputBox
 from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.link_cuts import LinkCuts
 from uvf.runtime.contract.param_server import ParamServer
 from uvf.runtime.contract.request_desk import QUERIES_MOST, ContractError, RequestDesk
 from uvf.runtime.contract.service import Answer, Service
@@ -76,6 +77,7 @@ class ServiceRunner:
         self._answered = [name for name, how in declared_in(self.type.Inputs).items() if isinstance(how, Called)]
         self.refusals = Refusals(lambda line: warn(f"{self.type.name}: {line}"))
         self._stops = StopBook(at_once=self.type.clock == "wall")
+        self._links = LinkCuts(self.owner, host.faults, self.type.simulator)
         self.service: Service
         self._boxes: dict[str, InputBox] = {}
         self._frames: dict[str, FrameBuffer] = {}
@@ -161,12 +163,21 @@ class ServiceRunner:
         for name, declared, owner in self.reads():
             wide = declared.every or declared.each_vehicle or declared.topic.qos in (Qos.LATCHED, Qos.EVENT)
             depth = EVERY_DEPTH if wide else LATEST_DEPTH
-            sink = self._stops.push if self._is_stop(name) else lambda s, n=name: self._boxes[n].push(s)
+            sink = self._stops.push if self._is_stop(name) else self._sink(name)
             self._bus.subscribe(declared.topic.at(owner), declared.topic.qos, sink, depth)
         everyone = "*" if self.type.scope == "world" else self.owner
         for name, request in self.type.requests.items():
             self._bus.serve(request.at(everyone), lambda query, n=name: self._desk.queue(n, query))  # type: ignore[misc]
         self._bus.serve(self._param_server.key(self.owner), self._queue_param)
+
+    def _sink(self, name: str) -> Callable[[Sample], None]:
+        """Where the messages of an input go that are not cut off."""
+
+        def hear(sample: Sample) -> None:
+            if not (self._links and self._links.cut(sample.key.split("/")[1], sample.stamp_ns)):
+                self._boxes[name].push(sample)
+
+        return hear
 
     def _queue_param(self, query: Query) -> None:
         if self._param_server.waiting >= QUERIES_MOST:
@@ -368,6 +379,10 @@ class ServiceRunner:
             raise ContractError(f"{self.type.name}: '{name}' is {type(message).__name__}, declared {topic.message.__name__}")
         key = topic.at(owner)
         payload = message.SerializeToString(deterministic=True)
+        if self._links.cut(owner, stamp):
+            if isinstance(topic, Request):
+                self._answers[name].append((stamp, Answer(owner, message, None, f"no answer: the link to {owner} is cut")))
+            return
         if isinstance(topic, Request):
             self._call(name, topic, owner, message, payload, stamp)
             return

@@ -9,7 +9,7 @@ from services.sim_air.build import build
 from services.sim_air.environment.wind import AirMass, AirRelativeState
 from uvf.maths.dryden import strength
 from uvf.models.scenario import load_scenario
-from uvf.models.world.wind import Gust, Shear, TurbulenceFile, Wind
+from uvf.models.world.wind import Gust, Shear, TurbulenceFile, Wind, WindChange
 from uvf.runtime.time.lockstep import Lockstep
 
 DT = 0.01
@@ -44,6 +44,20 @@ def test_sheared_wind_keeps_its_direction_and_is_the_steady_one_at_its_height():
     assert air.mean(10.0) == pytest.approx((4.0, 3.0, 0.0))
     assert air.mean(320.0) == pytest.approx(air.mean(304.8))
     assert air.mean(100.0) == pytest.approx(np.array((4.0, 3.0, 0.0)) * 10**0.2)
+
+
+def test_wind_that_changes_does_so_in_a_straight_line_and_stays():
+    changes = [WindChange(at=10.0, steady=(-10.0, 4.0, 0.0), over=20.0), WindChange(at=40.0, steady=(0.0, 0.0, 0.0))]
+    air = mass(Wind((0.0, 4.0, 0.0), changes=changes))
+    assert not air.is_steady and air.mean(50.0).tolist() == [0.0, 4.0, 0.0]
+    found = [air.step(t, DT, flight()).velocity[0] for t in (9.0, 15.0, 30.0, 39.0, 40.0, 90.0)]
+    assert found == pytest.approx([0.0, -2.5, -10.0, -10.0, 0.0, 0.0])
+
+
+def test_wind_that_an_operator_lets_blow_stays_whatever_was_to_come():
+    air = mass(Wind(changes=[WindChange(at=10.0, steady=(-10.0, 0.0, 0.0))]))
+    air.blow(np.array((1.0, 0.0, 0.0)))
+    assert air.step(20.0, DT, flight()).velocity.tolist() == [1.0, 0.0, 0.0]
 
 
 def test_a_gust_at_a_time_is_flown_through_in_its_length_over_the_airspeed():
