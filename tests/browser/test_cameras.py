@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from schemas import topics
-from services.gcs.view.panels.camera_panel import is_watched
+from services.gcs.view.panels.vehicle.camera_panel import is_watched
 from tests.browser.canvas import until
 from tests.services.gcs.scripted import UAV
 

@@ -18,25 +18,13 @@ from services.gcs.state.vehicle_model import DisplayPose, VehicleModel
 from services.gcs.view.controls import check_box, choice
 from services.gcs.view.drawing import CameraView, Colour, Node, PagePanel, Picture, Polyline
 from services.gcs.view.markup import Html, html, joined, trusted
-from services.gcs.view.panels import (
-    camera_panel,
-    command_panel,
-    facts,
-    fleet,
-    graph,
-    graph_drawing,
-    map_panel,
-    menus,
-    plan,
-    plot,
-    records,
-    run_panel,
-    status,
-    teleoperation,
-    trends,
-)
+from services.gcs.view.panels import fleet, records, run_panel, status
+from services.gcs.view.panels.graphs import graph, graph_drawing
 from services.gcs.view.panels.overview import Overview
+from services.gcs.view.panels.plans import plan
+from services.gcs.view.panels.plots import plot, trends
 from services.gcs.view.panels.timeline import TimeBar, timeline
+from services.gcs.view.panels.vehicle import camera_panel, command_panel, facts, map_panel, menus, teleoperation
 from services.gcs.view.past import PastView
 from services.gcs.view.scene.cameras import ASPECT, cameras
 from services.gcs.view.scene.levels import UP

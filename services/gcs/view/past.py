@@ -8,8 +8,9 @@ from services.gcs.state.vehicle_model import DisplayPose
 from services.gcs.view.controls import button
 from services.gcs.view.drawing import Node
 from services.gcs.view.markup import Html, html
-from services.gcs.view.panels import camera_panel, facts, fleet, records, status
+from services.gcs.view.panels import fleet, records, status
 from services.gcs.view.panels.overview import Overview
+from services.gcs.view.panels.vehicle import camera_panel, facts
 from services.gcs.view.scene.scene_view import SceneView
 
 STATIC = "/world/"

@@ -6,7 +6,7 @@ from services.gcs.state.vehicle_model import VehicleModel, link_of
 from services.gcs.state.wording import mode_name
 from services.gcs.view.controls import does
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.progress import waypoint_text
+from services.gcs.view.panels.vehicle.progress import waypoint_text
 
 COLUMNS = ("vehicle", "kind", "state", "speed", "position m", "battery", "doing", "link")
 

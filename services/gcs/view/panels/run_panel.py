@@ -11,9 +11,9 @@ from services.gcs.state.state import Model
 from services.gcs.state.wording import bearing_from
 from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.progress import order_line
 from services.gcs.view.panels.status import clock_text
 from services.gcs.view.panels.tasks import tasks_section
+from services.gcs.view.panels.vehicle.progress import order_line
 from uvf.models.yaml_data import BadInput, read_yaml
 
 RATES = (0.25, 0.5, 1.0, 2.0, 5.0, 0.0)

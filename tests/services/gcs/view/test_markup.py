@@ -9,7 +9,7 @@ import pytest
 
 from services import gcs
 from services.gcs.view.markup import Html, html, joined, trusted
-from services.gcs.view.panels.instruments import DriveInstruments, FlightInstruments
+from services.gcs.view.panels.vehicle.instruments import DriveInstruments, FlightInstruments
 
 EVIL = "<img src=x onerror='alert(\"1\")'>&"
 SHOWN = "&lt;img src=x onerror=&#x27;alert(&quot;1&quot;)&#x27;&gt;&amp;"

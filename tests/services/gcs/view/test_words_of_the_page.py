@@ -6,7 +6,8 @@ import pytest
 from schemas import topics
 from schemas.messages import Clock, Event, NavState, Process, Processes, Vector3
 from services.gcs.actions.page import OpenTab, ReleaseStop, Select, StopAll
-from services.gcs.view.panels import facts, status
+from services.gcs.view.panels import status
+from services.gcs.view.panels.vehicle import facts
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 from uvf.maths.rotations import from_euler

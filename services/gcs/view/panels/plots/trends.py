@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from services.gcs.state.plots.trends import Trend, Trends
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.chart import ChartFrame, curve, room
+from services.gcs.view.panels.plots.chart import ChartFrame, curve, room
 
 Floats = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.chart import BOTTOM, TOP, ChartFrame, curve, room
+from services.gcs.view.panels.plots.chart import BOTTOM, TOP, ChartFrame, curve, room
 from uvf.maths.decimation import min_max
 
 Floats = NDArray[np.float64]

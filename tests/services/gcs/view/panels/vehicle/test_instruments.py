@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from services.gcs.view.markup import html
-from services.gcs.view.panels.instruments import (
+from services.gcs.view.panels.vehicle.instruments import (
     CX,
     CY,
     PX_PER_DEGREE,

@@ -10,7 +10,7 @@ from services.gcs.state.graph.topic_verdicts import Grade
 from services.gcs.state.graph.traffic import short
 from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.message_text import message_text
+from services.gcs.view.panels.graphs.message_text import message_text
 
 PROBLEMS, ROWS, WHO = 6, 120, 3
 STYLES = {Grade.FINE: "good", Grade.QUIET: "idle", Grade.AMBER: "warn", Grade.RED: "bad"}

@@ -16,8 +16,8 @@ from services.gcs.state.session import BrowserSession
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button, does
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.areas import area_handles, area_panel, part_choice
-from services.gcs.view.panels.profile import profile
+from services.gcs.view.panels.plans.areas import area_handles, area_panel, part_choice
+from services.gcs.view.panels.plots.profile import profile
 
 UNPLACED = {"takeoff": "Take-off", "land": "Landing", "return": "Return", "repeat": "Repeat"}
 ON_GROUND = {"return": "Return", "repeat": "Repeat"}

@@ -7,8 +7,8 @@ from schemas.messages import NavStatus
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.state.wording import mode_name
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.instruments import DriveInstruments, FlightInstruments, drive_panel, primary_flight_display
-from services.gcs.view.panels.progress import waypoint_text
+from services.gcs.view.panels.vehicle.instruments import DriveInstruments, FlightInstruments, drive_panel, primary_flight_display
+from services.gcs.view.panels.vehicle.progress import waypoint_text
 from uvf.maths.rotations import to_euler
 from uvf.runtime.messages.convert import wxyz
 from uvf.runtime.messages.enum_names import enum_name

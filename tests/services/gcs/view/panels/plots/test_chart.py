@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from services.gcs.view.panels.chart import ChartFrame, curve, room
+from services.gcs.view.panels.plots.chart import ChartFrame, curve, room
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from schemas.messages import GimbalCommand, JointState, JointStates
 from services.gcs.actions.page import AimGimbal, GimbalMode, Looking, OpenTab, Select, ShowCamera
 from services.gcs.page.words import action_in
 from services.gcs.state.session import SHED_AFTER
-from services.gcs.view.panels.camera_panel import SEEN_FOR
+from services.gcs.view.panels.vehicle.camera_panel import SEEN_FOR
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, with_eyes
 from uvf.runtime.messages.convert import stamp

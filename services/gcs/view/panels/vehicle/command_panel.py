@@ -7,7 +7,7 @@ from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.progress import order_line, progress_line
+from services.gcs.view.panels.vehicle.progress import order_line, progress_line
 
 
 def command_panel(model: Model, v: VehicleModel, session: BrowserSession, t: float) -> Html:

@@ -8,7 +8,7 @@ from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.view.controls import button
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.map_panel import is_localized
+from services.gcs.view.panels.vehicle.map_panel import is_localized
 
 
 def menu(model: Model, session: BrowserSession) -> Html:

@@ -10,7 +10,7 @@ from schemas.messages import Event
 from services.gcs.actions.page import OpenTab, Select
 from services.gcs.actions.plots import PlotAdd, PlotFind, PlotHold, PlotPreset, PlotRemove, PlotTopic, PlotWindow
 from services.gcs.state.plots.plot_choice import MOST_SERIES
-from services.gcs.view.panels.plot import MOST_FOUND
+from services.gcs.view.panels.plots.plot import MOST_FOUND
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 

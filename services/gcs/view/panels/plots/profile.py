@@ -4,7 +4,7 @@ import numpy as np
 
 from services.gcs.state.plans.plan_outlook import PlanOutlook
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.panels.chart import ChartFrame
+from services.gcs.view.panels.plots.chart import ChartFrame
 
 HEIGHT = 130.0
 MOST_POINTS = 200

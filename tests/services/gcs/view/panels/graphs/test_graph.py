@@ -13,9 +13,9 @@ from services.gcs.state.graph.graph_choice import GraphChoice
 from services.gcs.state.graph.node_graph import NodeGraph, ServiceState, TopicState
 from services.gcs.state.graph.topic_verdicts import Grade
 from services.gcs.state.graph.traffic import SHOWN_MOST, KeyTraffic
-from services.gcs.view.panels.graph import listed, summary
-from services.gcs.view.panels.graph_drawing import MOST_BOXES, WIDTH, drawing
-from services.gcs.view.panels.message_text import MOST_LINES, message_text
+from services.gcs.view.panels.graphs.graph import listed, summary
+from services.gcs.view.panels.graphs.graph_drawing import MOST_BOXES, WIDTH, drawing
+from services.gcs.view.panels.graphs.message_text import MOST_LINES, message_text
 from services.gcs.watch import WatchedMessage
 from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UGV
