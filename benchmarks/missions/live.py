@@ -6,8 +6,8 @@ CPU in per cent of one core. ``late`` is the share of steps that begin more than
 
 import asyncio
 import tempfile
-import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 
@@ -31,18 +31,23 @@ def live(mission: str, shown: str) -> Figures:
     """Figures by process; shown: the vehicle that the page looks at."""
     with tempfile.TemporaryDirectory() as folder, System(Path(folder), page=True, mission=mission) as system:
         page = PageClient(system.page, {}, shown)
-        looking = threading.Thread(target=lambda: asyncio.run(page.look(SETTLES + LOOKS)))
-        looking.start()
-        time.sleep(SETTLES)
-        page.forget()
-        before, cpu, clock, began = _health(system), _cpu(system), _clock(system), time.monotonic()
-        time.sleep(LOOKS)
-        after, gone = _health(system), time.monotonic() - began
-        rows = {name: _row(before[name], health, gone) for name, health in after.items() if name in before}
-        everything = {"CPU %": 100 * (_cpu(system) - cpu) / gone, "rate": (_clock(system) - clock) / gone}
-        looking.join()
+        with ThreadPoolExecutor(1) as pool:
+            looking = pool.submit(asyncio.run, page.look(SETTLES + LOOKS))
+            rows = _watched(system, page)
+            looking.result()
     rows["page"] = {"positions Hz": page.moved / LOOKS, "kB/s": page.received / LOOKS / 1e3, "pictures Hz": page.pictures / LOOKS}
-    return {f"{mission}: {name}": row for name, row in {**rows, "all": everything}.items()}
+    return {f"{mission}: {name}": row for name, row in rows.items()}
+
+
+def _watched(system: System, page: PageClient) -> Figures:
+    """By process, and of all together."""
+    time.sleep(SETTLES)
+    page.forget()
+    before, cpu, clock, began = _health(system), _cpu(system), _clock(system), time.monotonic()
+    time.sleep(LOOKS)
+    after, gone = _health(system), time.monotonic() - began
+    rows = {name: _row(before[name], health, gone) for name, health in after.items() if name in before}
+    return {**rows, "all": {"CPU %": 100 * (_cpu(system) - cpu) / gone, "rate": (_clock(system) - clock) / gone}}
 
 
 def _row(before: Health, after: Health, gone: float) -> dict[str, float]:

@@ -24,7 +24,7 @@ def markers_found(track: RecordedTrack) -> Finding:
 def marker_error(track: RecordedTrack) -> Finding:
     """Largest horizontal distance of a marker that the vehicle tells of from the nearest one of the mission [m].
 
-    Counts at the end of the run. Infinite when it tells of none.
+    Counts at the end of the run. Infinite when it tells of none, or the mission has none.
     """
     distances = _distances(track)
     return Finding(float(distances.min(axis=0).max()) if distances.size else np.inf)

@@ -97,8 +97,7 @@ class DetectorService(Service):
             out.events = self._look(t, now.info, now.frames)
         found = self._found(t)
         if found.detections != self._told.detections:
-            new = len(found.detections) - len(self._told.detections)
-            out.events = [*(out.events or ()), *self._news(t, found)] if new > 0 else out.events
+            out.events = [*(out.events or ()), *self._news(t, found)]
             self._told = out.detections = found
         return out
 
@@ -106,6 +105,7 @@ class DetectorService(Service):
         """Goes on with the markers found."""
         if left.detections is None:
             return
+        self._told = left.detections
         known = [(d.id, array(d.position), d.sigma, d.views) for d in left.detections.detections[:MOST]]
         self._map.resume([each for each in known if all(map(math.isfinite, (*each[1], each[2]))) and each[2] > 0])
 

@@ -16,8 +16,8 @@ def unfulfilled(condition: TaskCondition, now: TeamSituation, since: float) -> s
             return text
     if condition.found is not None and condition.vehicle is not None:
         vehicles = now.vehicles(condition.vehicle)
-        if len(now.found(vehicles)) < condition.found:
-            return f"{' and '.join(vehicles)} have found {condition.found} markers"
+        if (known := len(now.found(vehicles))) < condition.found:
+            return f"{condition.found} markers are found by {' and '.join(vehicles)}, {known} by now"
     checks = list(_about_vehicles(condition))
     if condition.vehicle is None or not checks:
         return ""

@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import hypot
+from math import dist, hypot
+from typing import NamedTuple
 
 from schemas.messages import DriveCommand, Grid, Mode, TaskStatus
 from services.executive.asking import PendingRequests
@@ -14,6 +15,26 @@ from uvf.models.scenario import MissionVehicle
 Point = tuple[float, float]
 
 SAME_MARKER = 1.5  # m, within which what two vehicles have found is one marker
+
+
+class FoundMarker(NamedTuple):
+    """A marker: where it is [m, world], and who tells of it under which number."""
+
+    place: Point
+    told_by: frozenset[tuple[str, int]]
+
+    def may_be(self, other: "FoundMarker") -> bool:
+        """Whether two are one: near each other, and nobody tells of both."""
+        tell_apart = {name for name, _ in self.told_by} & {name for name, _ in other.told_by}
+        return not tell_apart and dist(self.place, other.place) <= SAME_MARKER
+
+    def is_of(self, other: "FoundMarker") -> bool:
+        """Whether both are of one marker, told at different times."""
+        return bool(self.told_by & other.told_by) or self.may_be(other)
+
+    def also(self, other: "FoundMarker") -> "FoundMarker":
+        """The same marker, told by more; the place is that of this one."""
+        return self._replace(told_by=self.told_by | other.told_by)
 
 
 @dataclass
@@ -59,15 +80,18 @@ class TeamSituation:
         place = self.place(vehicle)
         return hypot(place[0] - point[0], place[1] - point[1]) if place is not None else None
 
-    def found(self, vehicles: Sequence[str]) -> list[Point]:
-        """Places (x, y) [m, world] of the markers that these vehicles have found together, each once, the surest estimate of it."""
-        told = [each for vehicle in vehicles if vehicle in self.now.detections for each in self.now.detections[vehicle].detections]
-        places: list[Point] = []
-        for each in sorted(told, key=lambda detection: detection.sigma):
-            place = (each.position.x, each.position.y)
-            if all(hypot(place[0] - x, place[1] - y) > SAME_MARKER for x, y in places):
-                places.append(place)
-        return places
+    def found(self, vehicles: Sequence[str]) -> list[FoundMarker]:
+        """The markers that these vehicles have found together, each once, by the surest estimate of it."""
+        told = [(name, each) for name in vehicles if name in self.now.detections for each in self.now.detections[name].detections]
+        markers: list[FoundMarker] = []
+        for name, each in sorted(told, key=lambda pair: pair[1].sigma):
+            seen = FoundMarker((each.position.x, each.position.y), frozenset({(name, each.id)}))
+            known = next((k for k, marker in enumerate(markers) if marker.may_be(seen)), None)
+            if known is None:
+                markers.append(seen)
+            else:
+                markers[known] = markers[known].also(seen)
+        return markers
 
     def is_armed(self, vehicle: str) -> bool:
         """Whether the vehicle's autopilot says that it is armed."""

@@ -26,13 +26,14 @@ class GivingWay:
         """The directive as far as the vehicle at ``here`` [map] may follow it now."""
         self.waits_for = ""
         others = team.travellers if directive.action == Action.FOLLOW else []
+        others = [other for other in others if not is_first_of_circle(self._name, other.name, team.waiting)]
         if not others:
             return directive
         own, passed = from_place(directive.path, here[:2])
         own = own[way_along(own) <= AHEAD]
         clearance = self._routes.map_clearance(own, team.discs + np.array((0.0, 0.0, BLURRED)))
         wait = give_way(Traveller(self._name, own, self._radius), clearance, others)
-        if wait is None or is_first_of_circle(self._name, wait.for_whom, team.waiting):
+        if wait is None:
             return directive
         self.waits_for = wait.for_whom
         return replace(directive, until=passed + wait.until)

@@ -46,11 +46,9 @@ class Backdrop:
 
 
 @compiled
-def _field_at(x: float, y: float, fields: Floats, guess: int) -> int:
-    """Index of the first field that holds a point; neighbouring pixels mostly share ``guess``."""
+def _field_at(x: float, y: float, fields: Floats) -> int:
+    """Index of the first field that holds a point; the last one holds all."""
     last: int = fields.shape[0] - 1
-    if guess < last and fields[guess, 0] <= x < fields[guess, 2] and fields[guess, 1] <= y < fields[guess, 3]:
-        return guess
     for i in range(last):
         if fields[i, 0] <= x < fields[i, 2] and fields[i, 1] <= y < fields[i, 3]:
             return i
@@ -73,7 +71,7 @@ def _shade(x: float, y: float, footprint: float) -> float:
 @compiled
 def _paint(picture: Picture, eye: Floats, rays: Floats, fields: Floats) -> None:
     """The ray of a pixel is ``rays @ (column, row, 1)``: (3, 3), world."""
-    guess = 0
+    field = 0
     pixel = np.sqrt(rays[0, 1] ** 2 + rays[1, 1] ** 2 + rays[2, 1] ** 2)
     for row in range(picture.shape[0]):
         for column in range(picture.shape[1]):
@@ -85,8 +83,8 @@ def _paint(picture: Picture, eye: Floats, rays: Floats, fields: Floats) -> None:
                 reach = -eye[2] / dz
                 square = dx * dx + dy * dy + dz * dz
                 x, y = eye[0] + reach * dx, eye[1] + reach * dy
-                guess = _field_at(x, y, fields, guess)
+                field = _field_at(x, y, fields)
                 clear = np.exp(-reach * np.sqrt(square) / HAZE)
                 light = clear * _shade(x, y, reach * pixel * square / -dz)
             for k in range(3):
-                picture[row, column, k] = 255.0 * light * fields[guess, 4 + k] + (1.0 - clear) * SKY[k]
+                picture[row, column, k] = 255.0 * light * fields[field, 4 + k] + (1.0 - clear) * SKY[k]

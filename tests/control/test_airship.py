@@ -52,14 +52,34 @@ def test_it_climbs_and_sinks_no_faster_than_its_limits(height, climb):
     assert pitch == pytest.approx(math.asin(climb / 7.0), abs=0.01)
 
 
-def test_throttle_learns_the_drag_and_does_not_wind_up_at_its_stop():
+def test_throttle_does_not_wind_up_at_its_stop():
     law = AirshipPath()
-    for _ in range(5000):
-        _, throttle = law.step(flying(airspeed=5.0), path(airspeed=7.0))  # a headwind that never ends
+    for _ in range(2000):
+        _, throttle = law.step(flying(airspeed=4.0), path(airspeed=9.0))
     assert throttle == 1.0
-    for _ in range(200):
-        _, throttle = law.step(flying(airspeed=8.0), path(airspeed=7.0))
-    assert throttle < PARAMS.trim_throttle
+    assert law.step(flying(airspeed=7.0), path(airspeed=7.0))[1] == pytest.approx(PARAMS.trim_throttle, abs=0.02)
+
+
+def test_throttle_learns_a_drag_that_is_larger_than_the_parameters_say():
+    law = AirshipPath()
+    first = law.step(flying(airspeed=6.9), path())[1]
+    for _ in range(500):
+        _, throttle = law.step(flying(airspeed=6.9), path())
+    assert throttle > first + 0.02
+
+
+def test_pitch_learns_a_heaviness_and_does_not_wind_up_while_it_is_at_its_limit():
+    law = AirshipPath()
+    first = law.step(flying(climb=-0.1), path())[0]
+    for _ in range(500):
+        pitch, _ = law.step(flying(climb=-0.1), path())
+    assert pitch > first + 0.005
+    steep, held = AirshipPath(), msgspec.structs.replace(PARAMS, pitch_limit=0.1)
+    sinking = Cycle(cruising(airspeed=7.0, lift=GRAVITY, height=50.0, climb=-3.0), held, DT)
+    assert steep.step(sinking, path(height=500.0))[0] == 0.1
+    for _ in range(5000):
+        steep.step(sinking, path(height=500.0))
+    assert steep.step(Cycle(cruising(airspeed=7.0, lift=GRAVITY, height=50.0), held, DT), path())[0] == pytest.approx(0.0, abs=0.01)
 
 
 def test_a_throttle_that_is_given_is_kept():

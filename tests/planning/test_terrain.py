@@ -23,9 +23,9 @@ def test_a_wall_a_ditch_and_a_roof_over_the_ground_are_obstacles():
     ground[10:15, 40:45] = top[10:15, 40:45] = -0.8
     top[30, 30] = 3.0
     cells = terrain_obstacles((top, ground), R, LIMITS)
-    assert (cells[:, 20] == 100).all() and (cells[:, 19] == 0).all()
+    assert (cells[:, 20] == 99).all() and (cells[:, 19] == 0).all()
     assert (cells[9, 40:45] == 100).all() and (cells[12, 42] == 0)
-    assert cells[30, 30] == 100 and cells[30, 31] == 0
+    assert cells[30, 30] == 99 and cells[30, 31] == 0
 
 
 @pytest.mark.parametrize(("degrees", "blocked"), [(12.0, False), (28.0, True)])

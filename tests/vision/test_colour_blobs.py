@@ -41,7 +41,7 @@ def test_red_is_found_on_both_sides_of_where_hues_begin(colour):
 def test_two_are_told_apart_and_a_small_one_is_left_out():
     magenta = (255, 0, 217)
     found = colour_blobs(picture((10, 20, 8, 4, magenta), (30, 50, 6, 6, magenta), (50, 5, 2, 2, magenta)), MAGENTA, 6)
-    assert [blob.pixels for blob in found] == [32, 36]
+    assert [blob.pixels for blob in found] == [36, 32]
 
 
 @pytest.mark.parametrize(("row", "column"), [(0, 20), (52, 20), (10, 0), (10, 76)])
@@ -53,3 +53,9 @@ def test_one_at_the_rim_is_cut(row, column):
 def test_a_picture_all_of_that_colour_is_one_patch_that_is_cut():
     (found,) = colour_blobs(picture(ground=(255, 0, 217)), MAGENTA, 6)
     assert found.pixels == 60 * 80 and found.is_cut
+
+
+def test_of_very_many_the_largest_are_taken():
+    spots = [(row, column, 2, 2, (255, 0, 217)) for row in range(2, 56, 4) for column in range(2, 76, 4)]
+    found = colour_blobs(picture(*spots, (30, 40, 3, 3, (255, 0, 217))), MAGENTA, 4, most=20)
+    assert len(found) == 20 and found[0].pixels > 4

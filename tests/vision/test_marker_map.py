@@ -122,3 +122,42 @@ def test_it_goes_on_with_what_it_knew():
     found.see(seen((2.0, 1.0, 20.0), (15.0, 3.0)))
     assert [marker.id for marker in found.markers] == [7, 8]
     assert found.markers[0].views == 5
+
+
+def test_two_begun_apart_by_poor_ranges_become_one_that_keeps_the_id_of_the_one_seen_more():
+    found = MarkerMap(MODEL)
+    found.resume([(3, np.array((5.0, 3.0, 0.5)), 0.2, 1), (4, np.array((7.6, 3.0, 0.5)), 0.9, 6)])
+    for x in np.linspace(3.0, 7.0, 9):
+        found.see(seen((x, 1.0, 20.0), (6.9, 3.0)))
+        found.see(seen((x, 1.0, 20.0), (5.6, 3.0)))
+    assert [marker.id for marker in found.markers] == [4]
+    assert found.markers[0].views > 7
+
+
+def test_one_rover_that_drives_round_many_posts_tells_of_few_that_are_not_there():
+    """Posts at least 4 m apart, no occlusion, errors of the model."""
+    told = wrong = 0
+    for seed in range(10):
+        rng = np.random.default_rng(seed)
+        posts: list[np.ndarray] = []
+        while len(posts) < 6:
+            place = rng.uniform(-12.0, 12.0, 2)
+            if all(np.linalg.norm(place - other) > 4.0 for other in posts):
+                posts.append(place)
+        found = MarkerMap(MODEL)
+        for turn in np.linspace(0.0, 2 * math.pi, 120):
+            here = 7.0 * np.array((math.cos(turn), math.sin(turn)))
+            for post in posts:
+                if 1.0 < np.linalg.norm(post - here) < 15.0:
+                    found.see(seen((*here, 0.2), post, rng))
+        sure = [marker for marker in found.markers if marker.views >= 3 and marker.sigma <= 0.5]
+        told += len(sure)
+        wrong += sum(min(np.linalg.norm(marker.position[:2] - post) for post in posts) > 1.0 for marker in sure)
+    assert told > 40 and wrong <= 0.1 * told, (told, wrong)
+
+
+def test_what_was_seen_once_is_forgotten_in_time():
+    found = MarkerMap(MODEL)
+    for k in range(200):
+        found.see(seen((3.0 * k, 0.0, 20.0), (3.0 * k, 5.0)))
+    assert len(found.markers) == 50 and found.markers[-1].id == 200

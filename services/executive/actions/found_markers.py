@@ -9,13 +9,14 @@ from services.executive.actions.action import EngageAction, Failed
 from services.executive.actions.driving import GoalAction
 from services.executive.asking import PendingRequest
 from services.executive.interface import SOURCE
-from services.executive.situation import SAME_MARKER, TeamSituation
+from services.executive.situation import FoundMarker, TeamSituation
 
 Point = tuple[float, float]
 
 SIDES = 8
 """Places about a marker at which a vehicle may stop."""
 SHUNNED = 20.0  # s, after which a marker that could not be reached is tried again: maps grow
+AWAY_FOR = 10.0  # s that all vehicles do something else, after which the task has failed
 
 
 @dataclass
@@ -24,28 +25,41 @@ class _Visitor:
 
     engage: EngageAction
     is_engaged: bool = False
-    marker: Point | None = None
+    marker: FoundMarker | None = None
     places: list[Point] = field(default_factory=list)
     """Where it may stop, that have not been asked for yet."""
     ticket: PendingRequest | None = None
     goal: GoalAction | None = None
-    shunned: list[tuple[Point, float]] = field(default_factory=list)
+    shunned: list[tuple[FoundMarker, float]] = field(default_factory=list)
     """Markers that it could not reach, each until a time [s]."""
-    why_out: str = ""
-    """Why it goes to no marker any more; "" while it does."""
+    lost: str = ""
+    """Why it takes no part at all."""
+    away_since: float | None = None
+    """Since when [s] it does something else."""
 
-    def drop(self) -> None:
+    @property
+    def is_free(self) -> bool:
+        """Whether it may be sent to a marker."""
+        return self.is_engaged and not self.lost and self.away_since is None and self.marker is None
+
+    def drop(self, now: TeamSituation) -> None:
         """It goes to no marker any more."""
+        now.desk.drop(self.ticket)
+        if self.goal is not None:
+            self.goal.stop(now)
         self.marker, self.ticket, self.goal, self.places = None, None, None, []
 
 
 class VisitFoundAction:
-    """Vehicles go to ``count`` markers that ``finders`` find; who has none to go to does its own job meanwhile."""
+    """Vehicles go to ``count`` markers that ``finders`` find; who has none to go to does its own job meanwhile.
+
+    Who is taken over by somebody, or fails, leaves its marker to the others, and takes part again once it is back in mode Mission.
+    """
 
     def __init__(self, vehicles: Sequence[str], finders: Sequence[str], count: int, near: float) -> None:
         self._vehicles, self._finders, self._count, self._near = vehicles, finders, count, near
         self._visitors: dict[str, _Visitor] = {}
-        self._visited: list[Point] = []
+        self._visited: list[FoundMarker] = []
         self.reason = ""
 
     def begin(self, now: TeamSituation) -> None:
@@ -59,62 +73,56 @@ class VisitFoundAction:
         """Whether so many markers have been visited. Raises Failed when no vehicle is left that could."""
         found = now.found(self._finders)
         for name, visitor in self._visitors.items():
-            if visitor.why_out:
-                continue
-            if not visitor.is_engaged:
-                self._engage(now, visitor)
-            elif now.mode(name) != Mode.MODE_MISSION or not now.is_armed(name):
-                self._leave_out(now, visitor, f"{name} does something else")
-            elif visitor.goal is not None:
-                self._drive(now, visitor, visitor.goal)
-            elif visitor.marker is not None:
-                self._ask(now, name, visitor, visitor.marker)
+            self._step_one(now, name, visitor)
         self._share_out(now, found)
-        out = [visitor.why_out for visitor in self._visitors.values() if visitor.why_out]
-        if len(out) == len(self._visitors):
-            raise Failed("; ".join(out))
-        heading = [f"{name} goes to ({v.marker[0]:.0f}, {v.marker[1]:.0f})" for name, v in self._visitors.items() if v.marker is not None]
-        self.reason = "; ".join([f"{len(self._visited)} of {self._count} visited, {len(found)} found", *heading, *out])
-        return len(self._visited) >= self._count
+        self.reason = "; ".join([f"{len(self._visited)} of {self._count} visited, {len(found)} found", *self._headings()])
+        if len(self._visited) >= self._count:
+            self.stop(now)
+            return True
+        if all(v.lost or (v.away_since is not None and now.t - v.away_since >= AWAY_FOR) for v in self._visitors.values()):
+            raise Failed("; ".join(v.lost or f"{name} does something else" for name, v in self._visitors.items()))
+        return False
 
     def stop(self, now: TeamSituation) -> None:
-        """Asks no more."""
+        """Asks no more; who is under way to a marker stops."""
         for visitor in self._visitors.values():
             visitor.engage.stop(now)
-            now.desk.drop(visitor.ticket)
-            if visitor.goal is not None:
-                visitor.goal.stop(now)
+            visitor.drop(now)
 
-    def _share_out(self, now: TeamSituation, found: list[Point]) -> None:
+    def _step_one(self, now: TeamSituation, name: str, visitor: _Visitor) -> None:
+        if visitor.lost or name not in now.now.status:  # a gap in what is heard of it says nothing
+            return
+        if not visitor.is_engaged:
+            try:
+                visitor.is_engaged = visitor.engage.step(now)
+            except Failed as error:
+                visitor.lost = str(error)
+        elif now.mode(name) != Mode.MODE_MISSION or not now.is_armed(name):
+            visitor.drop(now)
+            visitor.away_since = now.t if visitor.away_since is None else visitor.away_since
+        else:
+            visitor.away_since = None
+            if visitor.goal is not None and visitor.marker is not None:
+                self._drive(now, visitor, visitor.goal, visitor.marker)
+            elif visitor.marker is not None:
+                self._ask(now, name, visitor, visitor.marker)
+
+    def _headings(self) -> list[str]:
+        going = [f"{name} goes to ({v.marker.place[0]:.0f}, {v.marker.place[1]:.0f})" for name, v in self._visitors.items() if v.marker]
+        out = [v.lost or f"{name} does something else" for name, v in self._visitors.items() if v.lost or v.away_since is not None]
+        return [*going, *out]
+
+    def _share_out(self, now: TeamSituation, found: list[FoundMarker]) -> None:
         """Markers to which nobody goes to those who are free, the shortest way first."""
-        free = {name: place[:2] for name, v in self._visitors.items() if self._is_free(v) and (place := now.place(name)) is not None}
-        ways = sorted((dist(here, marker), name, marker) for name, here in free.items() for marker in found)
-        for _, name, marker in ways:
-            visitor = self._visitors[name]
+        free = {name: place[:2] for name, v in self._visitors.items() if v.is_free and (place := now.place(name)) is not None}
+        ways = sorted((dist(here, marker.place), name, k) for name, here in free.items() for k, marker in enumerate(found))
+        for _, name, k in ways:
+            visitor, marker = self._visitors[name], found[k]
+            visitor.shunned = [(other, until) for other, until in visitor.shunned if now.t < until]
             taken = [*self._visited, *(v.marker for v in self._visitors.values() if v.marker is not None)]
-            shunned = [point for point, until in visitor.shunned if now.t < until]
-            if visitor.marker is None and all(dist(marker, other) > SAME_MARKER for other in (*taken, *shunned)):
-                visitor.marker, visitor.places = marker, self._about(marker, free[name])
-
-    @staticmethod
-    def _is_free(visitor: _Visitor) -> bool:
-        return visitor.is_engaged and not visitor.why_out and visitor.marker is None
-
-    @staticmethod
-    def _engage(now: TeamSituation, visitor: _Visitor) -> None:
-        try:
-            visitor.is_engaged = visitor.engage.step(now)
-        except Failed as error:
-            visitor.why_out = str(error)
-
-    @staticmethod
-    def _leave_out(now: TeamSituation, visitor: _Visitor, why: str) -> None:
-        """Somebody else has taken over, or the vehicle has failed: its marker is for the others."""
-        if visitor.goal is not None:
-            visitor.goal.stop(now)
-        now.desk.drop(visitor.ticket)
-        visitor.drop()
-        visitor.why_out = why
+            left_out = [*taken, *(other for other, _ in visitor.shunned)]
+            if visitor.marker is None and not any(marker.is_of(other) for other in left_out):
+                visitor.marker, visitor.places = marker, self._about(marker.place, free[name])
 
     def _about(self, marker: Point, here: Point) -> list[Point]:
         """Places about a marker at which to stop, those on this side first."""
@@ -122,12 +130,12 @@ class VisitFoundAction:
         turns = sorted((2 * pi * k / SIDES for k in range(SIDES)), key=lambda turn: min(turn, 2 * pi - turn))
         return [(marker[0] + self._near * cos(side + turn), marker[1] + self._near * sin(side + turn)) for turn in turns]
 
-    def _ask(self, now: TeamSituation, name: str, visitor: _Visitor, marker: Point) -> None:
+    def _ask(self, now: TeamSituation, name: str, visitor: _Visitor, marker: FoundMarker) -> None:
         """Asks for one place after the other, until there is a way."""
         ticket = visitor.ticket
         if ticket is None and not visitor.places:
             visitor.shunned.append((marker, now.t + SHUNNED))
-            visitor.drop()
+            visitor.drop(now)
         elif ticket is None:
             x, y = visitor.places[0]
             request = PreviewRequest(position=Vector3(x=x, y=y), source=SOURCE)
@@ -138,16 +146,14 @@ class VisitFoundAction:
         elif ticket.refused:
             visitor.places, visitor.ticket = visitor.places[1:], None
 
-    def _drive(self, now: TeamSituation, visitor: _Visitor, goal: GoalAction) -> None:
-        marker = visitor.marker
-        assert marker is not None
+    def _drive(self, now: TeamSituation, visitor: _Visitor, goal: GoalAction, marker: FoundMarker) -> None:
         try:
             there = goal.step(now)
         except Failed:
             visitor.shunned.append((marker, now.t + SHUNNED))
-            goal.stop(now)
-            visitor.drop()
+            visitor.drop(now)
             return
         if there:
             self._visited.append(marker)
-            visitor.drop()
+            visitor.goal = None  # it is there: nothing is to be cancelled
+            visitor.drop(now)

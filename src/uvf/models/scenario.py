@@ -15,7 +15,7 @@ from uvf.models.mission.extending import merge
 from uvf.models.mission.faults import check_parts
 from uvf.models.mission.file import MissionFile, Vehicle, load_mission
 from uvf.models.mission.fixtures import furnished
-from uvf.models.mission.task_check import check_finders, check_shares
+from uvf.models.mission.task_check import check_drivers, check_finders, check_shares
 from uvf.models.params import Params
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.world.file import WorldFile, load_world
@@ -120,6 +120,7 @@ def load_scenario(mission: str | Path, root: str | Path = ROOT) -> Scenario:
     check_starts(site)
     kinds = {name: file.kind for name, file in files.items()}
     check_parts(data.faults, kinds, place.at("faults"))
+    check_drivers(data.tasks, data.roles, kinds, place)
     check_shares(data.tasks, data.roles, kinds, place)
     check_finders(data.tasks, data.roles, {name for name, member in members.items() if DETECTOR in member.file.params}, place)
     return site

@@ -39,22 +39,23 @@ class Blob:
     """Whether it reaches the rim of the picture: there is more of it than is seen."""
 
 
-def colour_blobs(picture: NDArray[np.uint8], colour: ColourRange, least: int) -> list[Blob]:
-    """The patches of ``colour`` in a ``picture`` (height, width, 3) RGB that have ``least`` pixels or more, from its top down."""
+def colour_blobs(picture: NDArray[np.uint8], colour: ColourRange, least: int, most: int = 50) -> list[Blob]:
+    """The ``most`` largest patches of ``colour`` in a ``picture`` (height, width, 3) RGB with ``least`` pixels or more, largest first."""
     mask = colour_mask(picture, colour)
     labels, count = ndimage.label(mask, NEIGHBOURS)
     if count == 0:
         return []
     sizes = np.bincount(labels.ravel())[1:]
     rows, columns = mask.shape
+    parts = ndimage.find_objects(labels)
+    largest = [int(k) for k in np.argsort(-sizes, kind="stable")[:most] if sizes[k] >= least]
     found = []
-    for index, (across, along) in enumerate(ndimage.find_objects(labels), start=1):
-        if sizes[index - 1] < least:
-            continue
-        at = np.nonzero(labels[across, along] == index)
+    for k in largest:
+        across, along = parts[k]
+        at = np.nonzero(labels[across, along] == k + 1)
         cut = across.start == 0 or along.start == 0 or across.stop == rows or along.stop == columns
         row, column = float(np.mean(at[0])) + across.start, float(np.mean(at[1])) + along.start
-        found.append(Blob(column, row, along.stop - along.start, across.stop - across.start, int(sizes[index - 1]), cut))
+        found.append(Blob(column, row, along.stop - along.start, across.stop - across.start, int(sizes[k]), cut))
     return found
 
 

@@ -7,7 +7,7 @@ is seen from above. One that is seen from the side tells it by its apparent heig
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,10 @@ APART = 0.5  # m that a sighting is from the last one of the same marker: from o
 GATE = 3.5  # sigmas across a ray, within which a marker may be what is seen
 LEVEL = 0.5  # rad from the horizon, within which a marker is seen from the side
 RANGE_ERROR = 0.15  # share of the range by the apparent height
+SIZE_RATIO = 1.6  # between the apparent height and that of a marker so far away
 LEAST_SIGMA = 0.05  # m
+ONCE_MOST = 50
+"""Markers that were seen from one place alone which are kept."""
 INFLATED = 1e-9  # 1/m^2, so that a single ray has a solution
 
 
@@ -51,37 +54,37 @@ class Sighting:
     height: float | None
 
 
-@dataclass(eq=False)
 class Marker:
     """One marker: what its sightings tell, as information (3, 3) [1/m^2] and information times position (3,) [1/m]."""
 
-    id: int
-    information: Floats
-    weighted: Floats
-    views: int = 1
-    """From different places."""
-    seen_from: Floats = field(default_factory=lambda: np.full(3, np.inf))
-    """(3,) [m, world], the last time that it was counted."""
-
-    @property
-    def position(self) -> Floats:
-        """(3,) [m, world], of its middle."""
-        return np.asarray(np.linalg.solve(self.information, self.weighted), dtype=np.float64)
-
-    @property
-    def covariance(self) -> Floats:
-        """(3, 3) [m^2] of the position."""
-        return np.asarray(np.linalg.inv(self.information), dtype=np.float64)
-
-    @property
-    def sigma(self) -> float:
-        """m, 1 sigma, horizontal, of the worse axis."""
-        return max(math.sqrt(float(np.linalg.eigvalsh(self.covariance[:2, :2])[-1])), LEAST_SIGMA)
+    def __init__(self, id_: int, information: Floats, position: Floats, views: int = 1) -> None:
+        self.id = id_
+        self.views = views
+        """From different places."""
+        self.seen_from: Floats = np.full(3, np.inf)
+        """(3,) [m, world], the last time that it was counted."""
+        self._information, self._weighted = information, information @ position
+        self._solve()
 
     def add(self, information: Floats, position: Floats) -> None:
         """Adds what tells the ``position`` (3,) [m, world] with ``information`` (3, 3) [1/m^2]."""
-        self.information = self.information + information
-        self.weighted = self.weighted + information @ position
+        self._information = self._information + information
+        self._weighted = self._weighted + information @ position
+        self._solve()
+
+    def join(self, other: "Marker") -> None:
+        """Adds all that is known of another one, which is the same."""
+        self.add(other._information, other.position)
+        self.views += other.views
+        self.seen_from = other.seen_from
+
+    def _solve(self) -> None:
+        self.covariance: Floats = np.asarray(np.linalg.inv(self._information), dtype=np.float64)
+        """(3, 3) [m^2] of the position."""
+        self.position: Floats = self.covariance @ self._weighted
+        """(3,) [m, world], of its middle."""
+        self.sigma = max(math.sqrt(float(np.linalg.eigvalsh(self.covariance[:2, :2])[-1])), LEAST_SIGMA)
+        """m, 1 sigma, horizontal, of the worse axis."""
 
 
 class MarkerMap:
@@ -102,35 +105,41 @@ class MarkerMap:
         if first is not None:
             self.markers.append(first)
             self._next += 1
+            self._make_room()
         return first
 
     def resume(self, known: list[tuple[int, Floats, float, int]]) -> None:
         """Goes on with markers: id, position (3,) [m, world], sigma [m], views."""
         for name, position, sigma, views in known:
-            information = np.eye(3) / sigma**2
-            self.markers.append(Marker(name, information, information @ position, views))
+            self.markers.append(Marker(name, np.eye(3) / sigma**2, position, views))
             self._next = max(self._next, name + 1)
 
     def _known(self, sighting: Sighting) -> Marker | None:
-        """The nearest marker that lies on the ray."""
-        fitting = [(self._along(marker, sighting), marker) for marker in self.markers if self._fits(marker, sighting)]
+        """The marker that lies nearest to the ray, in sigmas."""
+        fitting = [(off, marker) for marker in self.markers if (off := self._off(marker, sighting)) <= GATE]
         return min(fitting, key=lambda pair: pair[0])[1] if fitting else None
 
-    def _along(self, marker: Marker, sighting: Sighting) -> float:
-        return float((marker.position - sighting.origin) @ sighting.ray)
-
-    def _fits(self, marker: Marker, sighting: Sighting) -> bool:
-        off = marker.position - sighting.origin
-        along = float(off @ sighting.ray)
-        if along <= 0:
-            return False
-        aside = off - along * sighting.ray
+    def _off(self, marker: Marker, sighting: Sighting) -> float:
+        """How many sigmas the ray misses a marker by; infinite for one that lies behind, or looks otherwise."""
+        away = marker.position - sighting.origin
+        along = float(away @ sighting.ray)
+        if along <= 0 or not self._looks_right(along, sighting):
+            return math.inf
+        aside = away - along * sighting.ray
         distance = float(np.linalg.norm(aside))
         if distance < 1e-9:
-            return True
+            return 0.0
         unit = aside / distance
         sigma = math.sqrt(float(unit @ marker.covariance @ unit) + self._sigma_aside(along) ** 2)
-        return distance <= max(GATE * sigma, self._model.least_apart / 2)
+        return distance / max(sigma, self._model.least_apart / 2 / GATE)
+
+    def _looks_right(self, along: float, sighting: Sighting) -> bool:
+        """Whether something so far away [m] has this apparent height; seen from above, or in part, that tells nothing."""
+        down = abs(float(sighting.ray[2]))
+        if sighting.height is None or down >= math.sin(LEVEL):
+            return True
+        expected = math.atan(self._model.height * math.sqrt(1 - down**2) / along)
+        return expected / SIZE_RATIO <= sighting.height <= expected * SIZE_RATIO
 
     def _sigma_aside(self, distance: float) -> float:
         return math.hypot(self._model.pose_sigma, distance * self._model.angle_sigma)
@@ -138,7 +147,8 @@ class MarkerMap:
     def _refine(self, marker: Marker, sighting: Sighting) -> None:
         if float(np.linalg.norm(marker.seen_from - sighting.origin)) < APART:
             return
-        marker.add(self._across(sighting, max(self._along(marker, sighting), APART)), sighting.origin)
+        along = float((marker.position - sighting.origin) @ sighting.ray)
+        marker.add(self._across(sighting, max(along, APART)), sighting.origin)
         marker.views, marker.seen_from = marker.views + 1, sighting.origin
         self._join(marker)
 
@@ -163,7 +173,8 @@ class MarkerMap:
         if not 0 < distance <= model.reach:
             return None
         information = self._across(sighting, distance) + INFLATED * np.eye(3)
-        marker = Marker(self._next, information, information @ sighting.origin, seen_from=sighting.origin)
+        marker = Marker(self._next, information, sighting.origin)
+        marker.seen_from = sighting.origin
         level = np.diag((0.0, 0.0, 1 / model.ground_sigma**2))
         marker.add(level, np.array((0.0, 0.0, middle)))
         if is_level:
@@ -172,11 +183,16 @@ class MarkerMap:
         return marker
 
     def _join(self, marker: Marker) -> None:
-        """Another one that has turned out to be the same is joined to the older of both."""
+        """Another one that has turned out to be the same is joined to the one of both that was seen from more places."""
         for other in self.markers:
             if other is not marker and float(np.linalg.norm((other.position - marker.position)[:2])) < self._model.least_apart:
-                older, newer = sorted((marker, other), key=lambda each: each.id)
-                older.information, older.weighted = older.information + newer.information, older.weighted + newer.weighted
-                older.views, older.seen_from = older.views + newer.views, marker.seen_from
-                self.markers.remove(newer)
+                kept, gone = sorted((marker, other), key=lambda each: (-each.views, each.id))
+                kept.join(gone)
+                self.markers.remove(gone)
                 return
+
+    def _make_room(self) -> None:
+        """Of those seen from one place alone the oldest is forgotten where there are too many: most of them were none."""
+        once = [marker for marker in self.markers if marker.views == 1]
+        if len(once) > ONCE_MOST:
+            self.markers.remove(once[0])

@@ -48,7 +48,7 @@ def test_who_is_low_drives_to_the_nearest_stands_there_and_leaves_when_charged(t
         drain(team, anne=charge)
         team.step(100)
         assert team.states() == ["RUNNING"]
-    assert team.tasks.tasks[0].reason == "anne is charged: 79 %"
+    assert team.tasks.tasks[0].reason == "anne is being charged: 79 %"
     drain(team, anne=0.8)
     team.step(2)
     assert team.states() == ["DONE"]
@@ -64,11 +64,28 @@ def test_two_go_to_two_chargers_and_at_a_single_one_the_second_waits(team):
     drain(one, anne=0.2, bert=0.2)
     one.step(8)
     assert [vehicle for vehicle, *_ in goals(one)] == ["anne"]
+    assert one.status["bert"].mode == Mode.MODE_HOLD, "who is low does not go on with its job"
+    one.places["anne"] = (2.5, 3.0)
     one.arrive("anne")
     one.step(5)
     drain(one, anne=0.8)
     one.step(10)
+    assert [vehicle for vehicle, *_ in goals(one)] == ["anne"], "anne still stands on it"
+    assert one.tasks.tasks[0].reason == "bert waits for a charger that is free"
+    one.places["anne"] = (4.0, 3.0)
+    one.step(8)
     assert [vehicle for vehicle, *_ in goals(one)] == ["anne", "bert"]
+
+
+def test_an_executive_that_is_started_again_does_not_end_the_charging_early(team):
+    team = team()
+    team.places["anne"] = (2.5, 3.1)
+    drain(team, anne=0.5)
+    team.step(8)
+    assert team.states() == ["RUNNING"] and goals(team) == []
+    drain(team, anne=0.8)
+    team.step(3)
+    assert team.states() == ["DONE"]
 
 
 def test_a_charger_without_current_fails_the_task_with_the_reason(team):
@@ -85,6 +102,7 @@ def test_a_charger_without_current_fails_the_task_with_the_reason(team):
     ("task", "chargers", "why"),
     [
         (CHARGE, "", "no chargers"),
+        (CHARGE.replace("team", "carl"), CHARGERS, "carl does not drive"),
         (CHARGE.replace("0.8", "0.3"), CHARGERS, "make 'up_to' larger"),
         (CHARGE, "chargers: [{x: 50.0, y: 3.0}]\n", r"chargers\[0\]: \(50, 3\) is not on the floor"),
     ],

@@ -91,9 +91,61 @@ def test_the_marker_of_who_is_taken_over_or_has_tipped_is_for_the_others(team):
     assert [vehicle for vehicle, *_ in goals(team)] == ["anne", "bert"]
     assert team.tasks.tasks[0].reason.endswith("anne does something else")
     team.status["bert"].armed = False
-    team.step(3)
+    team.step(50)
+    assert team.states() == ["RUNNING"]
+    team.step(80)
     assert team.states() == ["FAILED"]
     assert team.tasks.tasks[0].reason == "anne does something else; bert does something else"
+
+
+def test_who_is_back_takes_part_again_and_a_gap_in_what_is_heard_says_nothing(team):
+    team.find("carl", (4.2, 1.3))
+    team.step(8)
+    silent = team.status.pop("anne")
+    team.step(3)
+    team.status["anne"] = silent
+    team.step(3)
+    assert [vehicle for vehicle, *_ in goals(team)] == ["anne"]
+    team.status["anne"].mode = Mode.MODE_HOLD
+    team.status["bert"].mode = Mode.MODE_HOLD
+    team.step(20)
+    team.status["anne"].mode = Mode.MODE_MISSION
+    team.step(8)
+    assert [vehicle for vehicle, *_ in goals(team)] == ["anne", "anne"]
+
+
+def test_once_enough_are_visited_nobody_is_asked_for_anything_any_more(tmp_path):
+    team = Team(VISIT.replace("COUNT", "1") + "  - {name: wait, when: {after: 100}}\n", tmp_path)
+    team.refusals["arm", "bert"] = "it lies on its side"
+    team.find("carl", (4.2, 1.3))
+    team.step(8)
+    team.arrive("anne")
+    team.step(5)
+    assert team.states() == ["DONE", "WAITING"]
+    asked = len(team.asked)
+    team.refusals.clear()
+    team.step(30)
+    assert len(team.asked) == asked and not team.status["bert"].armed
+
+
+def test_who_is_under_way_when_enough_are_visited_stops(tmp_path):
+    team = Team(VISIT.replace("COUNT", "1"), tmp_path)
+    team.find("carl", (4.2, 1.3), (8.0, 7.4))
+    team.step(8)
+    team.arrive("anne")
+    team.step(5)
+    assert ("cancel", "bert") in [(name, vehicle) for name, vehicle, _ in team.asked]
+
+
+def test_two_that_one_vehicle_tells_apart_are_two_and_one_that_moves_is_visited_once(team):
+    team.find("carl", (4.2, 1.3), (5.4, 1.3))
+    team.step(8)
+    assert sorted(vehicle for vehicle, *_ in goals(team)) == ["anne", "bert"]
+    team.arrive("anne")
+    team.step(3)
+    team.find("carl", (4.2, 3.2), (5.4, 1.3))
+    team.step(8)
+    assert [vehicle for vehicle, *_ in goals(team)].count("anne") == 1
 
 
 def test_who_cannot_be_armed_is_left_out(tmp_path):
@@ -112,7 +164,7 @@ def test_a_condition_counts_each_marker_once(tmp_path):
     team.find("carl", (4.2, 1.3))
     team.find("anne", (4.6, 1.5))
     team.step(2)
-    assert team.tasks.tasks[0].reason == "waits until carl and anne have found 2 markers"
+    assert team.tasks.tasks[0].reason == "waits until 2 markers are found by carl and anne, 1 by now"
     team.find("anne", (4.6, 1.5), (9.0, 9.0))
     team.step(2)
     assert team.states() == ["DONE"]
@@ -121,6 +173,7 @@ def test_a_condition_counts_each_marker_once(tmp_path):
 @pytest.mark.parametrize(
     ("task", "why"),
     [
+        ("visit: {vehicle: carl, places: [[1, 1]]}", "carl does not drive"),
         ("visit: {vehicle: team}", "give places, or found"),
         ("visit: {vehicle: team, places: [[1, 1]], found: {by: carl, count: 1}}", "one of the two"),
         ("visit: {vehicle: team, found: {by: bert, count: 1}}", "bert looks for no markers"),

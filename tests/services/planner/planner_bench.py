@@ -28,9 +28,9 @@ START = (10.0, 20.0, np.pi / 2)
 """The map lies here in the world, turned: map x is world y."""
 
 
-def planner(explores=False, offset=0.0, sensors=NO_OTHERS):
-    """Of a round vehicle of 0.1 m with a lidar ``offset`` [m] ahead of its centre."""
-    footprint = RobotFootprint.circle(0.1)
+def planner(explores=False, offset=0.0, sensors=NO_OTHERS, footprint=None):
+    """Of a vehicle, round and of 0.1 m where nothing else is said, with a lidar ``offset`` [m] ahead of its centre."""
+    footprint = footprint or RobotFootprint.circle(0.1)
     seeing = sensors_of(footprint, Transform(np.array((1.0, 0.0, 0.0, 0.0)), np.array((offset, 0.0, 0.1))), sensors=sensors)
     return PlannerService(START, PlannedVehicle(footprint, seeing, 0.45, explores, "v"), PlannerParams())
 

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from schemas.messages import Grid
-from tests.services.planner.planner_bench import START, Bench, asked
+from tests.services.planner.planner_bench import START, Bench, asked, planner
+from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose
 from uvf.runtime.messages.height_grids import heights_message, heights_of
 
@@ -81,6 +82,24 @@ def test_who_stands_under_a_crown_gets_out_the_way_that_it_came_and_others_do_no
     other.here = (0.5, 1.0)
     other.step(2, shared=roofed).step(goal=[asked(3.5, 1.0)], shared=roofed).step(2, shared=roofed)
     assert not len(other.path) or np.hypot(*(other.path - (2.0, 1.0)).T).min() > 0.8
+
+
+@pytest.mark.parametrize("outline", ["round", "long"])
+def test_a_ditch_is_not_crossed_however_often_the_vehicle_has_stood_before_it(outline):
+    """0.5 m wide and 1 m deep, at 2.5 m (map x); the own map is free, for a lidar looks over it."""
+    shared = corridor()
+    top, ground = (part.copy() for part in heights_of(shared))
+    at = round((2.5 + 2.0) / SIDE)
+    top[at : at + 2] = ground[at : at + 2] = -1.0
+    ditch = heights_message(top, ground, SIDE, (START[0] - 3.0, START[1] - 2.0), 0.0)
+    made = bench()
+    if outline == "long":
+        made.service = planner(footprint=RobotFootprint.polygon(np.array(((0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)))))
+    for _ in range(3):
+        for along in np.linspace(0.6, 2.1, 8):
+            made.here = (float(along), 1.0)
+            made.step(shared=ditch)
+    assert not made.step(goal=[asked(3.5, 1.0)], shared=ditch).said["goal"][0].accepted
 
 
 def test_a_grid_of_another_ground_vehicle_serves_as_well():

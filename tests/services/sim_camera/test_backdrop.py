@@ -28,6 +28,15 @@ def test_a_field_shows_where_its_middle_projects(x, y):
     assert seen[0] > 2 * seen[1]
 
 
+def test_a_patch_within_a_larger_one_is_seen_from_wherever_the_picture_begins():
+    large, small = Field((10.0, -50.0, 100.0, 50.0), (0.0, 0.0, 0.8)), Field((38.0, -14.0, 42.0, -10.0), RED)
+    column, row = project(intrinsics(CAMERA), EAST_OPTICAL.T @ (np.array((40.0, -12.0, 0.0)) - EYE))
+    seen = paint(fields=[small, large])[round(row), round(column)]
+    assert seen[0] > 2 * seen[2]
+    hidden = paint(fields=[large, small])[round(row), round(column)]
+    assert hidden[2] > 2 * hidden[0]
+
+
 def test_the_horizon_is_in_the_middle_of_a_level_picture():
     picture = paint()
     assert (picture[:60] == SKY).all()

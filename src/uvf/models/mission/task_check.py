@@ -138,6 +138,17 @@ def check_finders(tasks: list[Task], roles: Roles, seeing: Collection[str], file
                     raise BadInput(f"{where}: {vehicle} looks for no markers; give it params: {{detector: {{}}}}, and a camera")
 
 
+def check_drivers(tasks: list[Task], roles: Roles, kinds: Mapping[str, str], file: FileLocation) -> None:
+    """Checks that who is to be charged, or to visit markers, drives; kinds: of each vehicle. Raises BadInput."""
+    for task, place in _placed(tasks, file.at("tasks")):
+        does = task.charge if task.charge is not None else task.visit
+        if does is not None:
+            where = place.at("charge" if task.charge is not None else "visit", "vehicle")
+            for name in members_of(does.vehicle, roles):
+                if kinds[name] != "ground":
+                    raise BadInput(f"{where}: {name} does not drive; name ground vehicles")
+
+
 def check_shares(tasks: list[Task], roles: Roles, kinds: Mapping[str, str], file: FileLocation) -> None:
     """Checks that maps which are handed over can be drawn and used; kinds: of each vehicle. Raises BadInput."""
     for task, place in _placed(tasks, file.at("tasks")):

@@ -48,8 +48,8 @@ class AirParams(FailsafeParams, frozen=True):
 
     # altitude and airspeed
     law: Annotated[
-        Literal["energy", "airship", "thesis"],
-        Meta(description="energy: total energy and rate loops; airship: turns by its rudder; thesis: its loops and gains"),
+        Literal["energy", "thesis", "airship"],
+        Meta(description="energy: total energy and rate loops; thesis: its loops and gains; airship: turns by its rudder"),
     ] = "energy"
     altitude_p: Annotated[float, _meta(0, 2, "1/s", "climb rate per error of altitude")] = 0.5
     climb_p: Annotated[float, _meta(0, 2, "", "pitch per error of climb angle")] = 1.0

@@ -5,8 +5,10 @@ from math import ceil, floor
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.maths.grids import distance_field
 from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.planning.costmap.costmap import Frame
+from uvf.planning.costmap.terrain import OVERHEAD
 
 Cells = NDArray[np.int8]
 Floats = NDArray[np.float64]
@@ -20,8 +22,8 @@ BESIDE = 2
 class SharedMap:
     """Cells (rows, columns) of -1 unknown, 0..100 per cent, of side ``resolution`` [m], whose first corner lies at ``map_from_cells``.
 
-    outranks: whether its obstacles count where the vehicle's own map shows free ground, too: a lidar looks over a ditch. Not where the
-    vehicle has driven: seen from above, the crown of a tree is an obstacle, and who stands under it would not get out.
+    outranks: whether its obstacles count where the vehicle's own map shows free ground, too: a lidar looks over a ditch. Not what is
+    overhead where the vehicle has driven: from above a crown is an obstacle, and who stands under it would not get out.
     """
 
     def __init__(self, cells: Cells, resolution: float, map_from_cells: Pose2, *, outranks: bool) -> None:
@@ -45,7 +47,7 @@ class SharedMap:
         own = both[row - bottom : row - bottom + cells.shape[0], column - left : column - left + cells.shape[1]]
         wins = cells != UNKNOWN
         if self._outranks:
-            wins &= (own < OCCUPIED) | _covered(driven, radius, frame, cells.shape)
+            wins &= (own < OCCUPIED) | ((own == OVERHEAD) & _covered(driven, radius, frame, cells.shape))
         own[wins] = cells[wins]
         x, y = own_corner[0] + (left - column) * resolution, own_corner[1] + (bottom - row) * resolution
         return both, (resolution, (x, y))
@@ -87,11 +89,13 @@ class SharedMap:
 def _covered(driven: Floats, radius: float, frame: Frame, shape: tuple[int, int]) -> NDArray[np.bool_]:
     """Cells (rows, columns) that a vehicle of this radius [m] has covered at ``driven`` (n, 2) [m], and ``BESIDE`` about them."""
     resolution, corner = frame
-    reach = ceil(radius / resolution) + BESIDE
-    steps = np.array([(row, column) for row in range(-reach, reach + 1) for column in range(-reach, reach + 1)])
-    steps = steps[np.hypot(*steps.T) * resolution <= radius + BESIDE * resolution]
     at = np.floor((driven - corner) / resolution).astype(np.int64)[:, ::-1]
-    cells = (at[:, None] + steps).reshape(-1, 2)
+    at = at[((at >= 0) & (at < shape)).all(axis=1)]
     covered = np.zeros(shape, dtype=np.bool_)
-    covered[tuple(cells[((cells >= 0) & (cells < shape)).all(axis=1)].T)] = True
+    if len(at):
+        reach = ceil(radius / resolution) + BESIDE
+        low, high = np.maximum(at.min(axis=0) - reach, 0), at.max(axis=0) + reach + 1
+        middles = np.zeros(tuple(np.minimum(high, shape) - low), dtype=np.bool_)
+        middles[tuple((at - low).T)] = True
+        covered[low[0] : high[0], low[1] : high[1]] = distance_field(middles) <= radius / resolution + BESIDE
     return covered

@@ -11,7 +11,9 @@ Floats = NDArray[np.float64]
 Cells = NDArray[np.int8]
 Mask = NDArray[np.bool_]
 
-FREE, UNKNOWN, OCCUPIED = 0, -1, 100
+FREE, UNKNOWN, OCCUPIED, OVERHEAD = 0, -1, 100, 99
+"""Values of cells. Overhead: an obstacle whose top is higher than vehicles are tall; if it is a crown, one may stand under it."""
+TALLEST, NEAR = 1.5, 2.0  # m: over the lowest ground within so many metres
 HOLES = 0.5  # m from what was seen, within which the ground is taken to go on: a lidar from the air leaves gaps between its lines
 BASELINE = 1.0  # m over which a slope is measured: a step between two cells says more of the noise
 BESIDE = np.ones((3, 3), dtype=np.bool_)
@@ -25,7 +27,7 @@ class TerrainLimits(NamedTuple):
 
 
 def terrain_obstacles(heights: tuple[Singles, Singles], resolution: float, limits: TerrainLimits) -> Cells:
-    """Cells (rows, columns): 0 where one can drive, 100 where not, -1 where nothing was seen.
+    """Cells (rows, columns): 0 where one can drive, 100 where not, or 99 overhead; -1 where nothing was seen.
 
     heights: top and ground (rows, columns) [m], NaN unknown; resolution [m]. An obstacle is where the top lies more than the step of the
     limits above the ground, the higher one of two neighbours whose ground differs by more than that, and ground that is steeper.
@@ -40,7 +42,9 @@ def terrain_obstacles(heights: tuple[Singles, Singles], resolution: float, limit
     blocked = (top - ground > limits.step) | _higher_of_steps(ground, max(limits.step, float(climb)))
     level = seen & ~ndimage.binary_dilation(blocked, BESIDE)
     blocked |= _slope(ground, level, resolution) > np.tan(limits.slope)
-    return np.where(seen, np.where(blocked, OCCUPIED, FREE), UNKNOWN).astype(np.int8)
+    lowest = ndimage.minimum_filter(ground, size=2 * round(NEAR / resolution) + 1, mode="nearest")
+    obstacle = np.where(top - lowest > TALLEST, OVERHEAD, OCCUPIED)
+    return np.where(seen, np.where(blocked, obstacle, FREE), UNKNOWN).astype(np.int8)
 
 
 def _higher_of_steps(ground: Floats, max_step: float) -> Mask:
