@@ -1,6 +1,5 @@
 """The shell of one service instance: its inputs, its due times and ``advance``, the one way any step is called."""
 
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
@@ -19,9 +18,10 @@ from uvf.runtime.contract.declaration import Called, Frames, Input, StopInput, W
 from uvf.runtime.contract.inbox import AHEAD_MOST, EVERY_DEPTH, InputBox
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.link_cuts import LinkCuts
+from uvf.runtime.contract.open_calls import OpenCalls
 from uvf.runtime.contract.param_server import ParamServer
 from uvf.runtime.contract.request_desk import QUERIES_MOST, ContractError, RequestDesk
-from uvf.runtime.contract.service import Answer, Service
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp_ns
 from uvf.runtime.messages.frames import FrameBuffer
 from uvf.runtime.messages.outputs import OutputMessages
@@ -73,7 +73,7 @@ class ServiceRunner:
         self._left: dict[str, bytes] = {}
         """The newest bytes that it has put on each key that it recalls."""
         self._desk = RequestDesk(self.type, self._put, self._refused)
-        self._answers: dict[str, deque[tuple[int, Answer[Any, Any]]]] = {name: deque() for name in self.type.calls}
+        self._calls = OpenCalls(self.type.calls, bus)
         self._answered = [name for name, how in declared_in(self.type.Inputs).items() if isinstance(how, Called)]
         self.refusals = Refusals(lambda line: warn(f"{self.type.name}: {line}"))
         self._stops = StopBook(at_once=self.type.clock == "wall")
@@ -87,14 +87,14 @@ class ServiceRunner:
 
     def join(self, epoch: int) -> None:
         """Enters an epoch without being made afresh: at the first clock, and wall-clock services always."""
-        self.epoch = epoch
+        self.epoch = self._calls.epoch = epoch
         for box in self._boxes.values():
             box.begin(epoch)
 
     def restart(self, epoch: int) -> None:
         """Makes the service afresh because time has started over; requests of the old epoch are refused."""
         trouble = self._contain(self._close)
-        self.epoch = epoch
+        self.epoch = self._calls.epoch = epoch
         kept = [(name, sample) for name, box in self._boxes.items() for sample in box.surviving(epoch)]
         self._refuse_all(AFRESH)
         if self._bulkhead is not None:
@@ -113,8 +113,7 @@ class ServiceRunner:
     def _refuse_all(self, reason: str) -> None:
         self._desk.refuse_all(reason)
         self._param_server.refuse_all(reason)
-        for answers in self._answers.values():
-            answers.clear()
+        self._calls.clear()
 
     def recall(self, find: Callable[[str], bytes | None]) -> None:
         """Hands the service what an instance before it has left; ``find`` gives the newest bytes of a key."""
@@ -300,7 +299,13 @@ class ServiceRunner:
         requests = self._desk.take(lambda stamp: self._is_due(stamp, t_ns))
         values = {name: self._boxes[name].value(t_ns) for name in self._valued}
         with self._limited():
-            now = self.type.Inputs(**values, **stops, **self._frames, **requests, **self._take_answers(t_ns))
+            now = self.type.Inputs(
+                **values,
+                **stops,
+                **self._frames,
+                **requests,
+                **self._calls.take(self._answered, lambda stamp: self._is_readable(stamp, t_ns)),
+            )
             outputs = self._said(self.service.step(t_ns / NS, now))
         self._publish(outputs, t_ns)
         self._desk.reply(outputs, t_ns)
@@ -346,14 +351,6 @@ class ServiceRunner:
     def _is_readable(self, stamp_ns: int, t_ns: int) -> bool:
         return stamp_ns < t_ns or self.type.clock == "wall"
 
-    def _take_answers(self, t_ns: int) -> dict[str, list[Answer[Any, Any]]]:
-        taken: dict[str, list[Answer[Any, Any]]] = {}
-        for name in self._answered:
-            waiting = self._answers[name]
-            taken[name] = [answer for stamp, answer in waiting if self._is_readable(stamp, t_ns)]
-            self._answers[name] = deque(x for x in waiting if not self._is_readable(x[0], t_ns))
-        return taken
-
     def _publish(self, outputs: OutputMessages, t_ns: int) -> None:
         stamp = self._now(t_ns) + round(self.type.latency * NS)
         for name, value in outputs.items():
@@ -378,14 +375,15 @@ class ServiceRunner:
         if not isinstance(message, topic.message):
             raise ContractError(f"{self.type.name}: '{name}' is {type(message).__name__}, declared {topic.message.__name__}")
         key = topic.at(owner)
-        payload = message.SerializeToString(deterministic=True)
-        if self._links.cut(owner, stamp):
-            if isinstance(topic, Request):
-                self._answers[name].append((stamp, Answer(owner, message, None, f"no answer: the link to {owner} is cut")))
-            return
+        is_cut = self._links.cut(owner, stamp)
         if isinstance(topic, Request):
-            self._call(name, topic, owner, message, payload, stamp)
+            if is_cut:
+                self._calls.fail(name, owner, message, stamp, f"no answer: the link to {owner} is cut")
+            else:
+                self._calls.send(name, topic, owner, message, stamp)
+        if is_cut or isinstance(topic, Request):
             return
+        payload = message.SerializeToString(deterministic=True)
         if "/actuator/" in key and (why := error_in(message)):
             raise ContractError(f"{key}: {why}")  # the simulator would refuse it: better the instance fails and is started afresh
         if topic.kept:
@@ -396,17 +394,3 @@ class ServiceRunner:
         if key not in self._publishers:
             self._publishers[key] = self._bus.publisher(key, message.DESCRIPTOR.full_name, qos)
         self.counters.published[key] = self._publishers[key].put(payload, stamp)
-
-    def _call(self, name: str, request: Request[Any, Any], owner: str, message: Message, payload: bytes, stamp: int) -> None:
-        asked_in = self.epoch
-
-        def on_reply(reply: bytes | None, reason: str, at_ns: int) -> None:
-            if asked_in != self.epoch:
-                return
-            try:
-                decoded = decode(request.at(owner), reply, request.reply) if reply is not None else None
-            except Malformed as error:
-                decoded, reason = None, str(error)
-            self._answers[name].append((at_ns, Answer(owner, message, decoded, reason)))
-
-        self._bus.call(request.at(owner), payload, stamp, on_reply)
