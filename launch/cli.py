@@ -98,8 +98,10 @@ def up(
     gcs: Annotated[bool, typer.Option("--gcs/--no-gcs", help="The page at http://127.0.0.1:8080.")] = True,
     host: Annotated[str, typer.Option(help="Address at which the page is served; 0.0.0.0 for other machines, with a token.")] = "",
     seconds: Annotated[float | None, typer.Option("--for", callback=within(0.01), help="Seconds after time began to run, to stop.")] = None,
+    change: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
 ) -> None:
     """Start a whole mission: every service in its own process, watched over, until Ctrl-C."""
+    from launch.changed_mission import changed_mission
     from launch.runs import new_run
     from launch.up import StartOptions
     from launch.up import up as run_up
@@ -114,6 +116,7 @@ def up(
             claim(address)
         os.environ |= {HOST: address.host, TOKEN: address.token}  # the page's process has the token that is printed here
         folder = new_run()
+        mission = str(changed_mission(path, change, folder)) if change else mission
         say(f"mission {path.stem}; logs in {folder}")
         page = f"page {address.url}   " if gcs else ""
         say(f"{page}{where_mavlink_goes(os.environ)}   Ctrl-C ends")

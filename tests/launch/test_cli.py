@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
 from typing import NamedTuple
 from unittest import mock
 
@@ -18,7 +19,7 @@ from launch import settings
 from launch.cli import app, main
 from launch.scoring.scores import MEASURES
 from tests.runtime.modes import free_port
-from uvf.models.scenario import ROOT
+from uvf.models.scenario import ROOT, load_scenario
 
 
 class Said(NamedTuple):
@@ -245,6 +246,16 @@ def test_up_says_where_mavlink_goes(tmp_path, monkeypatch):
     said = uvf("up", UVF_MAVLINK_TARGETS="", UVF_MAVLINK_LISTEN="", **ports).stdout
     assert "MAVLink: off" in said and "14550" not in said
     assert "MAVLink: to UDP 10.0.0.2:14550," in uvf("up", "--no-gcs", UVF_MAVLINK_TARGETS="10.0.0.2:14550", **ports).stdout
+
+
+def test_up_starts_a_mission_with_other_values_that_it_keeps_beside_the_log(tmp_path, monkeypatch):
+    started = []
+    monkeypatch.setattr("launch.up.up", lambda wanted, *_: started.append(wanted.mission) or 0)
+    ports = {"UVF_RUNS": str(tmp_path), "UVF_GCS_PORT": str(free_port()), "UVF_ROUTER": f"tcp/127.0.0.1:{free_port()}"}
+    uvf("up", "airship", "--set", "vehicles.airship.model=stick25", **ports)
+    assert load_scenario(started[0]).members["airship"].entry.model == "stick25"
+    assert Path(started[0]).parent.parent == tmp_path
+    assert "write it as" in uvf("up", "airship", "--set", "vehicles", **ports).stderr
 
 
 def test_the_help_says_what_each_measure_is_and_no_type_of_a_flag():
