@@ -17,6 +17,7 @@ PARTS: dict[str, str] = {
     "guidance": "Paths, vector fields, corners, Dubins paths, approaches and formation slots.",
     "planning": "Costmaps, search, exploration and path tracking of ground vehicles.",
     "slam": "Scan matching, pose graphs, particle filters, localization, maps and their evaluation.",
+    "vision": "Things of a colour in pictures, and where they stand in the world.",
     "mavlink": "MAVLink frames, mission items, modes and endpoints.",
 }
 
@@ -30,6 +31,7 @@ EXAMPLES: dict[str, str] = {
     "guidance": "03_dubins.py",
     "planning": "05_astar.py",
     "slam": "01_slam.py",
+    "vision": "11_vision.py",
     "mavlink": "09_mavlink.py",
 }
 """Of ``examples/library``, which a test runs."""

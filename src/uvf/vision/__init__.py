@@ -1,6 +1,26 @@
 """Things of a colour in pictures, and where they stand in the world."""
 
-from uvf.vision.colour_blobs import Blob, ColourRange, colour_blobs
-from uvf.vision.marker_map import Marker, MarkerMap, MarkerModel, Sighting
+from typing import TYPE_CHECKING
 
-__all__ = ["Blob", "ColourRange", "Marker", "MarkerMap", "MarkerModel", "Sighting", "colour_blobs"]
+from uvf.lazy import lazily
+
+if TYPE_CHECKING:
+    from uvf.vision.colour_blobs import Blob as Blob
+    from uvf.vision.colour_blobs import ColourRange as ColourRange
+    from uvf.vision.colour_blobs import colour_blobs as colour_blobs
+    from uvf.vision.marker_map import Marker as Marker
+    from uvf.vision.marker_map import MarkerMap as MarkerMap
+    from uvf.vision.marker_map import MarkerModel as MarkerModel
+    from uvf.vision.marker_map import Sighting as Sighting
+
+OFFERED = {
+    "colour_blobs": "uvf.vision.colour_blobs:colour_blobs",
+    "ColourRange": "uvf.vision.colour_blobs:ColourRange",
+    "Blob": "uvf.vision.colour_blobs:Blob",
+    "MarkerMap": "uvf.vision.marker_map:MarkerMap",
+    "MarkerModel": "uvf.vision.marker_map:MarkerModel",
+    "Sighting": "uvf.vision.marker_map:Sighting",
+    "Marker": "uvf.vision.marker_map:Marker",
+}
+__all__ = list(OFFERED)
+__getattr__, __dir__ = lazily(__name__, OFFERED)
