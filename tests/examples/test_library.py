@@ -22,9 +22,10 @@ SAID = {
     "07_control": r"aileron 0\.2\d\d rad, elevator -0\.0\d\d rad, throttle 0\.\d\d",
     "08_frames": r"\(3\.0, 3\.1\) m: 47\.0000279, 8\.0000394 deg",
     "09_mavlink": r"(?s)21 bytes .*HEARTBEAT of system 1, type 10",
+    "11_vision": r"a post at \((5\.9|6\.0|6\.1), (1\.9|2\.0|2\.1)\) m, seen from 3 places",
     "10_models": r"(?s)burger: radius .*demo: burger, milvus.*no vehicle 'burgr' .*did you mean 'burger'\?",
 }
-PARTS = ("control", "estimation", "guidance", "models", "planning", "sensors", "slam")
+PARTS = ("control", "estimation", "guidance", "models", "planning", "sensors", "slam", "vision")
 
 
 def ran(arguments, folder):
