@@ -13,9 +13,8 @@ for y in (0.5, 1.5, 2.5):
     eye = np.array((0.0, y, 0.4))  # a camera that looks to the east: its x is south, its y down
     away = POST - eye
     column, row = MIDDLE[0] - FOCAL * away[1] / away[0], MIDDLE[1] - FOCAL * away[2] / away[0]
-    half = round(FOCAL * 0.5 / away[0])
     picture = np.full((120, 160, 3), (90, 110, 80), dtype=np.uint8)
-    picture[round(row) - half : round(row) + half, round(column) - 4 : round(column) + 4] = (220, 20, 10)
+    picture[round(row) - 17 : round(row) + 17, round(column) - 4 : round(column) + 4] = (220, 20, 10)
 
     for blob in colour_blobs(picture, red, least=10):
         ray = np.array((1.0, -(blob.column - MIDDLE[0]) / FOCAL, -(blob.row - MIDDLE[1]) / FOCAL))
