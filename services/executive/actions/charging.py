@@ -83,7 +83,8 @@ class ChargeAction:
             return False
         if not 0.0 <= charge < self._wanted.below:  # below 0: it has none
             return True
-        others = [at[:2] for name in now.members if name != self.vehicle and (at := now.place(name)) is not None]
+        driving = [name for name in now.members if name != self.vehicle and not now.flies(name)]
+        others = [at[:2] for name in driving if (at := now.place(name)) is not None]
         charger = self._chargers.take(self.vehicle, place[:2], others)
         if charger is None:
             self._wait(now)
