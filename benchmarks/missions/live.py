@@ -81,4 +81,4 @@ def _clock(system: System) -> float:
     return system.client.read("sys", topics.CLOCK).t_ns / 1e9
 
 
-CASES = {"fleet": fleet}
+CASES = {"ten_vehicles": fleet}
