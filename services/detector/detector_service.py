@@ -1,26 +1,26 @@
 """Camera pictures and frames of a vehicle -> the coloured markers that it has found, and where they stand."""
 
 import math
-from collections import deque
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from msgspec import Meta
 
 from schemas import topics
 from schemas.messages import CameraCalibration, CompressedImage, Detection, Detections, Event
 from uvf.maths.rotations import rotate
+from uvf.maths.se3 import Transform
 from uvf.models.keys import key
 from uvf.models.params import Params
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.declaration import Reads, Writes, every, frames, optional, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import array, seconds, stamp, vector
-from uvf.runtime.messages.frames import FrameBuffer, FrameError
+from uvf.runtime.messages.frames import FrameBuffer
 from uvf.runtime.messages.pictures import PinholeRays, rgb_picture
+from uvf.runtime.messages.waiting import WaitingForFrames
 from uvf.vision import ColourRange, MarkerMap, MarkerModel, Sighting, colour_blobs
 
 WORLD = "world"
-PATIENCE = 2.0  # s that a picture waits until it is known where it was taken
 WAITING_MOST = 16
 MOST = 200  # markers that are told of
 
@@ -44,12 +44,6 @@ class DetectorParams(Params, frozen=True):
     least_apart: Annotated[Metres, key("m", "Two markers nearer to each other are one.")] = 1.5
     views: Annotated[int, Meta(ge=1, le=100), key("", "Places from which a marker has been seen, before it counts as found.")] = 3
     sigma: Annotated[Metres, key("m", "1 sigma of its place, horizontal, within which it counts as found.")] = 0.5
-
-
-class _Picture(NamedTuple):
-    taken: float  # s
-    frame: str
-    message: CompressedImage
 
 
 class DetectorService(Service):
@@ -84,14 +78,14 @@ class DetectorService(Service):
         self.params = params
         p = params
         self._map = MarkerMap(MarkerModel(p.height, p.ground, p.ground_sigma, p.pose_sigma, p.angle_sigma, p.reach, p.least_apart))
-        self._waiting: deque[_Picture] = deque(maxlen=WAITING_MOST)
-        self._placed_at = 0.0
+        self._waiting = WaitingForFrames[CompressedImage](WAITING_MOST)
         self._told = Detections()
         self._faults: set[str] = set()
 
     def step(self, t: float, now: Inputs) -> Outputs:
         """One cycle at ``t`` [s, simulation]: looks at the pictures of which it is known by now where they were taken."""
-        self._waiting.extend(_Picture(seconds(message.timestamp), message.frame_id, message) for message in now.image)
+        for picture in now.image:
+            self._waiting.add(seconds(picture.timestamp), picture)
         out = self.Outputs(events=[])
         if now.info is not None:
             out.events = self._look(t, now.info, now.frames)
@@ -110,30 +104,23 @@ class DetectorService(Service):
         self._map.resume([each for each in known if all(map(math.isfinite, (*each[1], each[2]))) and each[2] > 0])
 
     def _look(self, t: float, info: CameraCalibration, frames: FrameBuffer) -> list[Event]:
-        still: list[_Picture] = []
-        faults: list[tuple[str, str]] = []
-        for picture in self._waiting:
+        events: list[Event] = []
+        for picture, world_from_camera in self._waiting.placed(t, lambda waiting: (waiting, _place(waiting, frames))):
             try:
-                for sighting in self._sightings(picture, info, frames):
+                for sighting in self._sightings(picture, info, world_from_camera):
                     self._map.see(sighting)
-                self._placed_at = t
-            except FrameError as error:
-                if t - picture.taken < PATIENCE:
-                    still.append(picture)
-                elif t - self._placed_at >= PATIENCE:  # the first ones are older than the first frame
-                    faults.append(("pictures are left out: nobody knows where they were taken", str(error)))
             except BadInput as error:
-                faults.append(("a picture is left out", str(error)))
-        self._waiting = deque(still, maxlen=WAITING_MOST)
-        return [event for text, cause in faults for event in self._tell(t, text, cause)]
+                events += self._tell(t, "a picture is left out", str(error))
+        if self._waiting.lost:
+            events += self._tell(t, "pictures are left out: nobody knows where they were taken", self._waiting.lost)
+        return events
 
-    def _sightings(self, picture: _Picture, info: CameraCalibration, frames: FrameBuffer) -> list[Sighting]:
-        """Raises BadInput for a picture that is none, FrameError as long as it is not known where it was taken."""
-        world_from_camera = frames.lookup(WORLD, picture.frame, picture.taken)
+    def _sightings(self, picture: CompressedImage, info: CameraCalibration, world_from_camera: Transform) -> list[Sighting]:
+        """Raises BadInput for a picture that is none."""
         rays = PinholeRays(info)
         p = self.params
         found = []
-        for blob in colour_blobs(rgb_picture(picture.message, info), ColourRange(p.hue, p.hue_width, p.saturation, p.value), p.pixels):
+        for blob in colour_blobs(rgb_picture(picture, info), ColourRange(p.hue, p.hue_width, p.saturation, p.value), p.pixels):
             ray = rotate(world_from_camera.rotation, rays.at(blob.column, blob.row))
             height = None if blob.is_cut else math.atan(blob.height / rays.focal)
             found.append(Sighting(world_from_camera.translation, ray, height))
@@ -164,3 +151,8 @@ class DetectorService(Service):
             return []
         self._faults.add(text)
         return [Event(timestamp=stamp(t), severity=Event.WARNING, text=text, cause=cause, source=self.name)]
+
+
+def _place(picture: CompressedImage, frames: FrameBuffer) -> Transform:
+    """World from the camera as it was when the picture was taken. Raises FrameError as long as that is not known."""
+    return frames.lookup(WORLD, picture.frame_id, seconds(picture.timestamp))

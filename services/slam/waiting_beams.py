@@ -1,6 +1,5 @@
 """Beams that wait until it is known where they were measured."""
 
-from collections import deque
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -8,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se3 import apply
-from uvf.runtime.messages.frames import FrameBuffer, FrameError
+from uvf.runtime.messages.frames import FrameBuffer
+from uvf.runtime.messages.waiting import WaitingForFrames
 from uvf.sensors.sweeping import SweepSegment
 
 Floats = NDArray[np.float64]
 
 WORLD = "world"
-PATIENCE = 2.0  # s that a picture or sweep waits until it is known where it was taken, and without any that is, until this is told
 WAITING_MOST = 256
 
 
@@ -44,37 +43,16 @@ class _Taken(NamedTuple):
         return PlacedBeams(places[len(places) // 2].translation, np.concatenate(ends), self.beams.reach)
 
 
-class WaitingBeams:
-    """What is added is given back in its order, placed, as soon as the frames at its time are known; what waits in vain is dropped."""
+class WaitingBeams(WaitingForFrames[_Taken]):
+    """Pictures and sweeps."""
 
     def __init__(self) -> None:
-        self._waiting: deque[_Taken] = deque(maxlen=WAITING_MOST)
-        self._placed_at = 0.0
-        self.lost = ""
-        """Why beams were dropped in the last step; "" as long as others have been placed not long ago."""
+        super().__init__(WAITING_MOST)
 
-    def add(self, parts: list[SweepSegment], frame: str, beams: RayBundle) -> None:
+    def take(self, parts: list[SweepSegment], frame: str, beams: RayBundle) -> None:
         """A picture or sweep that was measured in a frame; parts: its beams by when they were measured."""
-        self._waiting.append(_Taken(parts, frame, beams))
+        self.add(parts[-1].at, _Taken(parts, frame, beams))
 
-    def clear(self) -> None:
-        """Nothing waits any more."""
-        self._waiting.clear()
-
-    def placed(self, t: float, frames: FrameBuffer) -> Iterator[PlacedBeams]:
+    def in_world(self, t: float, frames: FrameBuffer) -> Iterator[PlacedBeams]:
         """What has a place at ``t`` [s] by now."""
-        still: list[_Taken] = []
-        reason = ""
-        for taken in self._waiting:
-            try:
-                placed = taken.placed(frames)
-            except FrameError as error:
-                if t - taken.parts[-1].at < PATIENCE:
-                    still.append(taken)
-                else:
-                    reason = str(error)
-                continue
-            self._placed_at = t
-            yield placed
-        self._waiting = deque(still, maxlen=WAITING_MOST)
-        self.lost = reason if t - self._placed_at >= PATIENCE else ""
+        return self.placed(t, lambda taken: taken.placed(frames))

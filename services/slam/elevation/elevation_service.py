@@ -83,7 +83,7 @@ class ElevationService(Service):
             ends = np.column_stack((rays * ranges[:, None], np.zeros(len(rays))))
             ends[(ranges < self._lidar.range_min) | (ranges > self._lidar.range_max)] = np.nan
             bundle = RayBundle(ends, self._lidar.range_max)
-            self._waiting.add(sweeping_of(self._lidar).parts(len(sweep.ranges), seconds(sweep.timestamp)), sweep.frame_id, bundle)
+            self._waiting.take(sweeping_of(self._lidar).parts(len(sweep.ranges), seconds(sweep.timestamp)), sweep.frame_id, bundle)
         out = self.Outputs(events=self._insert(t, now.frames, _drivers(now)))
         if self._changed and t - self._published_at >= self.params.map_period - 1e-9:
             self._changed, self._published_at = False, t
@@ -106,7 +106,7 @@ class ElevationService(Service):
     def _insert(self, t: float, frames: FrameBuffer, drivers: Floats) -> list[Event]:
         """drivers: (n, 3) x, y, radius [m, world] of what is no ground, for it drives there."""
         try:
-            for placed in self._waiting.placed(t, frames):
+            for placed in self._waiting.in_world(t, frames):
                 on_them = (cdist(placed.ends[:, :2], drivers[:, :2]) < drivers[:, 2]).any(axis=1)
                 self._map.insert(placed.ends[~on_them])
                 self._changed = True

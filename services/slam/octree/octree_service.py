@@ -127,11 +127,11 @@ class OctreeService(Service):
                 except BadInput as error:
                     events += self._tell(t, "a depth picture is left out", str(error))
                 else:
-                    self._waiting.add([SweepSegment(seconds(picture.timestamp), slice(None))], picture.frame_id, beams)
+                    self._waiting.take([SweepSegment(seconds(picture.timestamp), slice(None))], picture.frame_id, beams)
         if (lidar := self._sensors.lidar) is not None:
             for sweep in scan:
                 beams = sweep_beams(sweep, min(self.params.lidar_reach, lidar.range_max))
-                self._waiting.add(sweeping_of(lidar).parts(len(sweep.ranges), seconds(sweep.timestamp)), sweep.frame_id, beams)
+                self._waiting.take(sweeping_of(lidar).parts(len(sweep.ranges), seconds(sweep.timestamp)), sweep.frame_id, beams)
         return events
 
     def _place(self, t: float, frames: FrameBuffer) -> list[Event]:
@@ -140,7 +140,7 @@ class OctreeService(Service):
             self._waiting.clear()
             full = f"it takes {MEMORY_MOST / 1e9:g} GB; set a larger 'resolution' or a shorter reach"
             return self._tell(t, "the map is full: nothing is put in any more", full)
-        for origin, ends, reach in self._waiting.placed(t, frames):
+        for origin, ends, reach in self._waiting.in_world(t, frames):
             self._octree.insert(origin, ends, reach)
             self._changed = True
         return self._tell(t, "pictures or scans cannot be mapped", self._waiting.lost) if self._waiting.lost else []

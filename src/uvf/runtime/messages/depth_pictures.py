@@ -1,14 +1,13 @@
 """Depth pictures as rays of the camera and how far along each one something was seen."""
 
-import io
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, UnidentifiedImageError
 
 from schemas.messages import CameraCalibration, CompressedImage
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.pictures import decoded, intrinsics_of
 
 Floats = NDArray[np.float64]
 
@@ -20,21 +19,14 @@ def depth_rays(picture: CompressedImage, info: CameraCalibration) -> tuple[Float
 
     picture: 16-bit PNG of mm along the view. Raises BadInput.
     """
-    depths = _depths(picture, (info.height, info.width)).ravel() / MILLIMETRES
-    return _rays(info.width, info.height, tuple(info.K)), depths
+    depths = _depths(picture, info).ravel() / MILLIMETRES
+    return _rays(info.width, info.height, intrinsics_of(info)), depths
 
 
-def _depths(picture: CompressedImage, shape: tuple[int, int]) -> NDArray[np.uint16]:
+def _depths(picture: CompressedImage, info: CameraCalibration) -> NDArray[np.uint16]:
     """(height, width) mm."""
-    try:
-        opened = Image.open(io.BytesIO(picture.data), formats=("PNG",))
-        if (opened.height, opened.width) != shape:
-            raise BadInput(
-                f"{picture.frame_id}: a depth picture of {opened.width} x {opened.height}, but its camera has {shape[1]} x {shape[0]}"
-            )
-        depths = np.asarray(opened)
-    except (UnidentifiedImageError, Image.DecompressionBombError, OSError, SyntaxError, ValueError) as error:
-        raise BadInput(f"{picture.frame_id}: a depth picture that cannot be read as PNG: {error}") from None
+    opened = decoded(picture, info, ("PNG",), "depth picture")
+    depths = np.asarray(opened)
     if depths.ndim != 2 or not np.issubdtype(depths.dtype, np.integer) or depths.dtype == np.uint8:
         raise BadInput(f"{picture.frame_id}: a depth picture must be grey with 16 bits; this one is {opened.mode}")
     return depths.astype(np.uint16)
@@ -42,9 +34,7 @@ def _depths(picture: CompressedImage, shape: tuple[int, int]) -> NDArray[np.uint
 
 @lru_cache(maxsize=8)
 def _rays(width: int, height: int, k: tuple[float, ...]) -> Floats:
-    """(height * width, 3) the ways along which the pixels look. Raises BadInput."""
-    if len(k) != 9 or not (k[0] > 0.0 and k[4] > 0.0):
-        raise BadInput("a camera's K must hold nine numbers, the focal lengths above zero")
+    """(height * width, 3) the ways along which the pixels look."""
     rows, columns = np.mgrid[:height, :width]
     rays: Floats = np.stack(((columns - k[2]) / k[0], (rows - k[5]) / k[4], np.ones((height, width))), axis=2).reshape(-1, 3)
     return rays
