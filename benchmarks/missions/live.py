@@ -72,8 +72,8 @@ def _health(system: System) -> dict[str, Health]:
 
 def _cpu(system: System) -> float:
     """CPU seconds of all processes so far."""
-    family = [psutil.Process(system.popen.pid), *psutil.Process(system.popen.pid).children(recursive=True)]
-    return sum(sum(process.cpu_times()[:2]) for process in family)
+    launcher = psutil.Process(system.popen.pid)
+    return sum(sum(process.cpu_times()[:2]) for process in (launcher, *launcher.children(recursive=True)))
 
 
 def _clock(system: System) -> float:

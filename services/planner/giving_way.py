@@ -25,8 +25,8 @@ class GivingWay:
     def heed(self, directive: Directive, here: Pose2, team: Teammates) -> Directive:
         """The directive as far as the vehicle at ``here`` [map] may follow it now."""
         self.waits_for = ""
-        others = team.travellers if directive.action == Action.FOLLOW else []
-        others = [other for other in others if not is_first_of_circle(self._name, other.name, team.waiting)]
+        travellers, waiting = (team.travellers, team.waiting) if directive.action == Action.FOLLOW else ([], {})
+        others = [other for other in travellers if not is_first_of_circle(self._name, other.name, waiting)]
         if not others:
             return directive
         own, passed = from_place(directive.path, here[:2])

@@ -1,7 +1,6 @@
 """The cameras of a mission: one instance for all of them."""
 
 from contextlib import suppress
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -14,8 +13,8 @@ from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.model import engine_urdf
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.vehicle.sensors import Camera
-from uvf.models.world.file import TERRAIN, WorldFile
-from uvf.models.world.geometry import solids, things
+from uvf.models.world.file import WorldFile
+from uvf.models.world.geometry import land, things
 from uvf.models.world.terrain_picture import raised_mesh, with_ground_of
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.contract.instances import ServiceInstance
@@ -49,10 +48,8 @@ def build(site: Scenario) -> list[ServiceInstance]:
 
 def _rendered(world: WorldFile) -> list[Solid]:
     """What is rendered of a world, of its terrain what stands out of the ground."""
-    if world.terrain is None:
-        return solids(world)
-    raised = raised_mesh(world.terrain)
-    return [*things(world), *(replace(solid, mesh=raised) for solid in solids(world) if solid.name == TERRAIN and raised is not None)]
+    raised = None if world.terrain is None else raised_mesh(world.terrain)
+    return things(world) if world.terrain is None or raised is None else [*things(world), land(world.terrain, raised)]
 
 
 def _cameras(member: MissionVehicle) -> dict[str, Camera]:

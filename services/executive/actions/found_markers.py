@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import atan2, cos, dist, pi, sin
 
-from schemas.messages import Mode, PreviewRequest, Vector3
+from schemas.messages import Mode
 from services.executive.actions.action import EngageAction, Failed
 from services.executive.actions.driving import GoalAction
+from services.executive.actions.visiting import preview_request
 from services.executive.asking import PendingRequest
-from services.executive.interface import SOURCE
 from services.executive.situation import FoundMarker, TeamSituation
 
 Point = tuple[float, float]
@@ -75,12 +75,12 @@ class VisitFoundAction:
         for name, visitor in self._visitors.items():
             self._step_one(now, name, visitor)
         self._share_out(now, found)
-        self.reason = "; ".join([f"{len(self._visited)} of {self._count} visited, {len(found)} found", *self._headings()])
+        self.reason = "; ".join([f"{len(self._visited)} of {self._count} visited, {len(found)} found", *self._headings(), *self._out()])
         if len(self._visited) >= self._count:
             self.stop(now)
             return True
         if all(v.lost or (v.away_since is not None and now.t - v.away_since >= AWAY_FOR) for v in self._visitors.values()):
-            raise Failed("; ".join(v.lost or f"{name} does something else" for name, v in self._visitors.items()))
+            raise Failed("; ".join(self._out()))
         return False
 
     def stop(self, now: TeamSituation) -> None:
@@ -108,9 +108,12 @@ class VisitFoundAction:
                 self._ask(now, name, visitor, visitor.marker)
 
     def _headings(self) -> list[str]:
-        going = [f"{name} goes to ({v.marker.place[0]:.0f}, {v.marker.place[1]:.0f})" for name, v in self._visitors.items() if v.marker]
-        out = [v.lost or f"{name} does something else" for name, v in self._visitors.items() if v.lost or v.away_since is not None]
-        return [*going, *out]
+        going = [(name, visitor.marker.place) for name, visitor in self._visitors.items() if visitor.marker is not None]
+        return [f"{name} goes to ({x:.0f}, {y:.0f})" for name, (x, y) in going]
+
+    def _out(self) -> list[str]:
+        """Why vehicles take no part now."""
+        return [v.lost or f"{name} does something else" for name, v in self._visitors.items() if v.lost or v.away_since is not None]
 
     def _share_out(self, now: TeamSituation, found: list[FoundMarker]) -> None:
         """Markers to which nobody goes to those who are free, the shortest way first."""
@@ -137,9 +140,7 @@ class VisitFoundAction:
             visitor.shunned.append((marker, now.t + SHUNNED))
             visitor.drop(now)
         elif ticket is None:
-            x, y = visitor.places[0]
-            request = PreviewRequest(position=Vector3(x=x, y=y), source=SOURCE)
-            visitor.ticket = now.desk.ask("preview", name, request, patience=0.0)
+            visitor.ticket = now.desk.ask("preview", name, preview_request(None, visitor.places[0]), patience=0.0)
         elif ticket.accepted:
             visitor.goal, visitor.ticket = GoalAction(name, visitor.places[0], None), None
             visitor.goal.begin(now)

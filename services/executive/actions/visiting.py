@@ -31,7 +31,7 @@ class VisitAction:
         self._routes, self.reason = None, "asks how long the ways are"
         starts: tuple[Start, ...] = (None, *self._places)
         self._tickets = {
-            (vehicle, start, goal): now.desk.ask("preview", vehicle, _preview(start, goal), patience=0.0)
+            (vehicle, start, goal): now.desk.ask("preview", vehicle, preview_request(start, goal), patience=0.0)
             for vehicle in self._vehicles
             for start in starts
             for goal in self._places
@@ -78,7 +78,8 @@ class VisitAction:
         return float(ticket.reply.duration) if ticket.accepted else inf
 
 
-def _preview(start: Start, goal: Point) -> PreviewRequest:
+def preview_request(start: Start, goal: Point) -> PreviewRequest:
+    """What the way from ``start`` to ``goal`` [m, world] would be like; from where the vehicle is, without a start."""
     request = PreviewRequest(position=Vector3(x=goal[0], y=goal[1]), source=SOURCE)
     if start is not None:
         request.start.CopyFrom(Vector3(x=start[0], y=start[1]))

@@ -14,7 +14,7 @@ from uvf.maths.solids import chosen
 from uvf.models.shapes.scene import still
 from uvf.models.shapes.solid import Keyframes, Solid
 from uvf.models.world.drivable import drivable
-from uvf.models.world.file import TERRAIN, Box, Script, Wall, WorldFile
+from uvf.models.world.file import TERRAIN, Box, Script, Terrain, Wall, WorldFile
 from uvf.models.world.terrain import relief, terrain_mesh
 
 Floats = NDArray[np.float64]
@@ -85,8 +85,12 @@ def solids(world: WorldFile, folder: Path = Path()) -> list[Solid]:
     """
     if world.terrain is None:
         return things(world, folder)
-    land = terrain_mesh(world.terrain, folder)
-    return [*things(world, folder), Solid(TERRAIN, "mesh", (1.0, 1.0, 1.0), np.zeros(3), colour=world.terrain.colour, mesh=land)]
+    return [*things(world, folder), land(world.terrain, terrain_mesh(world.terrain, folder))]
+
+
+def land(terrain: Terrain, mesh: Path) -> Solid:
+    """The terrain as a solid; mesh: its triangles in metres, world axes."""
+    return Solid(TERRAIN, "mesh", (1.0, 1.0, 1.0), np.zeros(3), colour=terrain.colour, mesh=mesh)
 
 
 def things(world: WorldFile, folder: Path = Path()) -> list[Solid]:
