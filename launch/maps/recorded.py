@@ -10,7 +10,7 @@ from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.wire import Malformed, decode_sample
 from uvf.runtime.log.run_samples import run_samples
-from uvf.runtime.messages.grids import as_map
+from uvf.runtime.messages.maps.grids import as_map
 
 LAYERS = {"grid": topics.MAP, "team": topics.TEAM_MAP}
 

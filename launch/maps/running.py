@@ -10,7 +10,7 @@ from uvf.models.world.map_file import GridMap, undecided_share
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.zenoh_bus import ZenohBus
-from uvf.runtime.messages.grids import as_map, as_message
+from uvf.runtime.messages.maps.grids import as_map, as_message
 from uvf.slam.maps.session import MappingSession
 
 PATIENCE = 5.0  # s

@@ -10,7 +10,7 @@ from services.slam.map_server import in_world
 from uvf.maths.se2 import IDENTITY
 from uvf.models.world.map_file import GridMap
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.messages.grids import as_map
+from uvf.runtime.messages.maps.grids import as_map
 from uvf.slam.maps.quality import MapScore, score
 
 

@@ -13,9 +13,9 @@ from uvf.models.shapes.scene import scene
 from uvf.models.world.file import WorldFile
 from uvf.models.world.geometry import FloorPlan, floor_plan, solids
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.messages.grids import as_map
-from uvf.runtime.messages.height_grids import heights_of
-from uvf.runtime.messages.mapped_floor import MappedFloor
+from uvf.runtime.messages.maps.grids import as_map
+from uvf.runtime.messages.maps.height_grids import heights_of
+from uvf.runtime.messages.maps.mapped_floor import MappedFloor
 from uvf.slam.maps.quality import MapScore, score
 
 Floats = NDArray[np.float64]

@@ -16,7 +16,7 @@ from uvf.runtime.contract.declaration import Reads, Writes, every, frames, optio
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import array, seconds, stamp, vector
 from uvf.runtime.messages.frames import FrameBuffer
-from uvf.runtime.messages.pictures import PinholeRays, rgb_picture
+from uvf.runtime.messages.readings.pictures import PinholeRays, rgb_picture
 from uvf.runtime.messages.waiting import WaitingForFrames
 from uvf.vision import ColourRange, MarkerMap, MarkerModel, Sighting, colour_blobs
 

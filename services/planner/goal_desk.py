@@ -7,7 +7,7 @@ from services.planner.directives import line_of
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.planning.global_planner import GlobalPlanner
 from uvf.planning.smoothing import length
-from uvf.runtime.messages.fences import fencing
+from uvf.runtime.messages.plans.fences import fencing
 
 Point = tuple[float, float]
 

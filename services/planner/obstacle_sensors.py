@@ -17,7 +17,7 @@ from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.hidden_obstacles import HiddenObstacles, unexplained
 from uvf.planning.costmap.range_sights import GroundSight, cone_sight, depth_sight
 from uvf.runtime.messages.convert import seconds
-from uvf.runtime.messages.depth_pictures import depth_rays
+from uvf.runtime.messages.readings.depth_pictures import depth_rays
 from uvf.runtime.messages.sensor_frames import OPTICAL
 from uvf.sensors.fitted import base_from_sensor
 

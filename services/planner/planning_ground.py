@@ -18,8 +18,8 @@ from uvf.planning.global_planner import GlobalPlanner
 from uvf.planning.navigation.directive import Directive
 from uvf.planning.navigation.global_routes import GlobalRoutes
 from uvf.runtime.messages.convert import cost_grid, occupancy_cells, pose2_of, seconds
-from uvf.runtime.messages.grids import as_map
-from uvf.runtime.messages.height_grids import has_heights, heights_of
+from uvf.runtime.messages.maps.grids import as_map
+from uvf.runtime.messages.maps.height_grids import has_heights, heights_of
 
 SIZE, RESOLUTION = 8.0, 0.05  # m, of the window in which obstacles are remembered that the map does not show
 TELL_PERIOD = 2.0  # s between two costmaps that are told

@@ -36,7 +36,7 @@ from uvf.models.world.footing import Footing
 from uvf.models.world.geometry import GRAZE, solids
 from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.contract.instances import ServiceInstance
-from uvf.runtime.messages.faults import Faults
+from uvf.runtime.messages.readings.faults import Faults
 from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
 from uvf.sensors.surroundings import aircraft_tree, vehicle_tree
 

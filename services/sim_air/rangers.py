@@ -12,7 +12,7 @@ from services.sim_air.engine.states import AircraftMotion
 from uvf.maths.raycast import MovingBody, Scene
 from uvf.models.vehicle.sensors import Lidar, RangeFinder, Sensors, Sonar
 from uvf.runtime.messages.outputs import Value
-from uvf.runtime.messages.sensors import range_message, scan_message
+from uvf.runtime.messages.readings.sensors import range_message, scan_message
 from uvf.sensors.fitted import line_of
 from uvf.sensors.range_sensors import LidarModel, RangeModel
 from uvf.sensors.sampling import DelayLine

@@ -31,10 +31,10 @@ from services.sim_air.aircraft import Aircraft
 from services.sim_air.stage import AirStage
 from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, optional, replies, request, topic
 from uvf.runtime.contract.service import Service
-from uvf.runtime.messages.faults import Faults
 from uvf.runtime.messages.outputs import Value
+from uvf.runtime.messages.readings.faults import Faults
+from uvf.runtime.messages.readings.sensors import battery_message, gnss_message, imu_message, later
 from uvf.runtime.messages.sensor_frames import sensor_frames
-from uvf.runtime.messages.sensors import battery_message, gnss_message, imu_message, later
 from uvf.sensors.sampling import Due
 
 

@@ -16,7 +16,7 @@ from uvf.models.world.footing import COARSE, Footing
 from uvf.models.world.geometry import solids
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.instances import ServiceInstance
-from uvf.runtime.messages.faults import Faults
+from uvf.runtime.messages.readings.faults import Faults
 from uvf.sensors.surroundings import Surroundings, aircraft_solid, own_tree, vehicle_tree
 
 

@@ -25,7 +25,7 @@ from uvf.models.vehicle.file import GroundBody
 from uvf.models.vehicle.sensors import Encoders, GnssSensor, ImuSensor, Lidar, RangeFinder, Sampled, Sonar
 from uvf.runtime.messages.link_frames import Links
 from uvf.runtime.messages.outputs import Value
-from uvf.runtime.messages.sensors import battery_message, gnss_message, imu_message, range_message, scan_message
+from uvf.runtime.messages.readings.sensors import battery_message, gnss_message, imu_message, range_message, scan_message
 from uvf.sensors.body_track import BodyTrack
 from uvf.sensors.fitted import line_of, receiver
 from uvf.sensors.instruments import Receiver

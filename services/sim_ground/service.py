@@ -32,8 +32,8 @@ from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.raycast import MovingBody
 from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, optional, replies, request, topic
 from uvf.runtime.contract.service import Service
-from uvf.runtime.messages.faults import Faults
-from uvf.runtime.messages.sensors import later
+from uvf.runtime.messages.readings.faults import Faults
+from uvf.runtime.messages.readings.sensors import later
 from uvf.sensors.sampling import Due
 from uvf.sensors.surroundings import Surroundings, Whereabouts
 

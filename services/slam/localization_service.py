@@ -15,7 +15,7 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.declaration import Reads, Writes, frames, optional, replies, request, topic
 from uvf.runtime.messages.convert import planar_pose, pose2_of, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
-from uvf.runtime.messages.grids import as_map, as_message
+from uvf.runtime.messages.maps.grids import as_map, as_message
 from uvf.slam.localization.known_map import KnownMap, of_grid
 from uvf.slam.localization.localizer import HALF_SURE, Localizer, LocalizerState
 from uvf.slam.localization.params import FilterParams

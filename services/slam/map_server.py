@@ -12,7 +12,7 @@ from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.contract.declaration import Reads, Writes, optional, replies, request, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import pose2_of_frame
-from uvf.runtime.messages.grids import as_map, as_message
+from uvf.runtime.messages.maps.grids import as_map, as_message
 
 Save = Callable[[GridMap, str, str], Path]
 """Writes a map under a name, in a mode of map_server. Raises BadInput."""

@@ -12,7 +12,7 @@ from uvf.models.vehicle.sensors import Lidar
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import planar_frame, seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer
-from uvf.runtime.messages.scans import Shape, beams_of, is_usable, shape_of
+from uvf.runtime.messages.readings.scans import Shape, beams_of, is_usable, shape_of
 from uvf.sensors.fitted import sweeping_of
 from uvf.slam.correction import toward
 from uvf.slam.deskew import straightened

@@ -39,7 +39,7 @@ from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.log.laser_log import samples_of
 from uvf.runtime.log.replay import hand_over, play
 from uvf.runtime.messages.convert import seconds, yaw_of
-from uvf.runtime.messages.grids import as_map
+from uvf.runtime.messages.maps.grids import as_map
 from uvf.slam.maps.quality import score
 
 Floats = NDArray[np.float64]

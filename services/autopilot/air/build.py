@@ -27,9 +27,9 @@ from uvf.models.world import file as world_file
 from uvf.models.world.terrain import relief
 from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.contract.instances import ServiceInstance
-from uvf.runtime.messages.fences import fence_message, fencing
-from uvf.runtime.messages.mission_files import item_from_file
-from uvf.runtime.messages.plan_items import plan_items
+from uvf.runtime.messages.plans.fences import fence_message, fencing
+from uvf.runtime.messages.plans.mission_files import item_from_file
+from uvf.runtime.messages.plans.plan_items import plan_items
 
 GROUND_ITEMS = (MissionItem.TAKEOFF, MissionItem.LAND)
 NEAREST = 1.0  # s behind a leader: what lies ahead of the follower has to be known

@@ -19,7 +19,7 @@ from uvf.guidance.vector_field import turn_radius
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.mission.fence import ACTIONS, OPEN, FenceAction, Fencing, near_home
 from uvf.models.vehicle.flight_params import AirParams
-from uvf.runtime.messages.fences import fencing
+from uvf.runtime.messages.plans.fences import fencing
 
 Floats = NDArray[np.float64]
 

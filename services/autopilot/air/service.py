@@ -45,7 +45,7 @@ from uvf.models.vehicle.flight_params import FIXED, AirParams
 from uvf.runtime.contract.declaration import each_vehicle
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.messages.plan_items import place_of, plan_items
+from uvf.runtime.messages.plans.plan_items import place_of, plan_items
 from uvf.runtime.state.stop_all import StopStatus
 
 

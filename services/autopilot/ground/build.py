@@ -7,8 +7,8 @@ from services.autopilot.ground.service import GroundAutopilot
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.instances import ServiceInstance
-from uvf.runtime.messages.fences import fence_message, fencing
-from uvf.runtime.messages.mission_files import item_from_file
+from uvf.runtime.messages.plans.fences import fence_message, fencing
+from uvf.runtime.messages.plans.mission_files import item_from_file
 from uvf.sensors.fitted import sweeping_of
 from uvf.sensors.sweeping import AT_ONCE
 

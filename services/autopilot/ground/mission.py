@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import hypot, inf, isfinite
 
 from schemas.messages import Mission, MissionItem, MissionProgress, Timestamp, Vector3
-from uvf.runtime.messages.plan_ids import mission_id
+from uvf.runtime.messages.plans.plan_ids import mission_id
 
 Point = tuple[float, float]
 

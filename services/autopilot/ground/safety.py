@@ -14,7 +14,7 @@ from services.autopilot.link_watch import LinkWatch
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.models.mission.fence import Fencing, near_home
 from uvf.models.vehicle.file import GroundBody
-from uvf.runtime.messages.fences import fence_fault, fencing
+from uvf.runtime.messages.plans.fences import fence_fault, fencing
 from uvf.sensors.sweeping import Sweeping
 
 BY_ITSELF = (Mode.MODE_MISSION, Mode.MODE_RETURN)

@@ -30,7 +30,7 @@ from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.surveying import FieldSurvey, SurveyPlanner
 from uvf.models.mission.fence import ACTIONS
-from uvf.runtime.messages.mission_files import item_from_file
+from uvf.runtime.messages.plans.mission_files import item_from_file
 
 CIRCLE = {True: 50.0, False: 1.0}
 """m, radius of a new circle of a vehicle that flies, and of one that does not."""

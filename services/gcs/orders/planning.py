@@ -23,7 +23,7 @@ from services.gcs.state.vehicle_model import VehicleModel
 from uvf.guidance.mission_preview import PreviewFlight
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.messages.plan_items import plan_items
+from uvf.runtime.messages.plans.plan_items import plan_items
 
 FIRST_HEIGHT = 60.0  # m, of a first waypoint where nothing tells a better one
 STEPS = 12  # of the flight ahead, with each step of the page: some milliseconds

@@ -32,7 +32,7 @@ from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import seconds
-from uvf.runtime.messages.mapped_floor import MappedFloor
+from uvf.runtime.messages.maps.mapped_floor import MappedFloor
 from uvf.runtime.messages.spawned import SPAWNED_MOST, name_fault, object_fault
 from uvf.runtime.state.stop_all import StopStatus, name_of, told
 

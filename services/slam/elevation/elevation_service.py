@@ -18,7 +18,7 @@ from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, every,
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import scan_rays, seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer
-from uvf.runtime.messages.height_grids import heights_message, heights_of
+from uvf.runtime.messages.maps.height_grids import heights_message, heights_of
 from uvf.sensors.fitted import sweeping_of
 from uvf.slam.elevation.elevation_map import Elevation, ElevationMap, MapFull
 

@@ -5,7 +5,7 @@ import numpy as np
 from schemas.messages import CameraCalibration, CompressedImage, LaserScan
 from services.slam.waiting_beams import RayBundle
 from uvf.runtime.messages.convert import scan_rays
-from uvf.runtime.messages.depth_pictures import depth_rays
+from uvf.runtime.messages.readings.depth_pictures import depth_rays
 
 BEYOND = 2.0
 """A beam without a return is taken to end at so many times the reach: it is free as far as there, and has met nothing."""

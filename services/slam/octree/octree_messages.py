@@ -2,7 +2,7 @@
 
 from schemas.messages import Grid, OctreeMap
 from uvf.runtime.messages.convert import occupancy_grid, stamp
-from uvf.runtime.messages.height_grids import heights_message
+from uvf.runtime.messages.maps.height_grids import heights_message
 from uvf.slam.octree.columns import Columns
 from uvf.slam.octree.files import read_octree, to_bt
 from uvf.slam.octree.leaves import DEPTH, coarser, leaves_of

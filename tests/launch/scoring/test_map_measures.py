@@ -10,7 +10,7 @@ from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.world.geometry import floor_plan
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose
-from uvf.runtime.messages.height_grids import heights_message
+from uvf.runtime.messages.maps.height_grids import heights_message
 
 INDOORS = load_scenario(ROOT / "missions" / "demo.yaml")
 OUTDOORS = load_scenario(ROOT / "missions" / "air_ground.yaml")

@@ -8,7 +8,7 @@ from schemas.messages import AirData, Battery, Gnss, Imu, LaserScan, SurfaceComm
 from uvf.models.mission.faults import Fault, check_faults, check_parts
 from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.messages.convert import seconds, stamp
-from uvf.runtime.messages.faults import PARTS, Faults
+from uvf.runtime.messages.readings.faults import PARTS, Faults
 
 HERE = FileLocation("mission.yaml")
 SAID = {

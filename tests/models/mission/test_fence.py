@@ -11,7 +11,7 @@ from uvf.models.mission.fence import MOST_VERTICES, MOST_ZONES, OPEN, FenceFile
 from uvf.models.mission.file import load_mission
 from uvf.models.scenario import ROOT
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.messages.fences import fence_fault, fence_message, fencing
+from uvf.runtime.messages.plans.fences import fence_fault, fence_message, fencing
 from uvf.runtime.messages.validation import error_in
 
 FENCE = {

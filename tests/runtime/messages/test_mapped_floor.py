@@ -8,7 +8,7 @@ import pytest
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.world.geometry import floor_plan, reachable_floor
 from uvf.runtime.messages.convert import occupancy_grid
-from uvf.runtime.messages.mapped_floor import MappedFloor
+from uvf.runtime.messages.maps.mapped_floor import MappedFloor
 
 
 @pytest.fixture(scope="module")

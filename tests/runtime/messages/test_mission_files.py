@@ -7,8 +7,8 @@ import pytest
 
 from schemas.messages import MissionItem
 from uvf.models.mission.file import Waypoint
-from uvf.runtime.messages import mission_files
-from uvf.runtime.messages.plan_ids import mission_id
+from uvf.runtime.messages.plans import mission_files
+from uvf.runtime.messages.plans.plan_ids import mission_id
 
 
 def test_a_line_of_a_mission_file_becomes_an_item():

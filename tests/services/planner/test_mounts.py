@@ -13,7 +13,7 @@ from services.planner.exploration_goals import SETTLING
 from services.sim_ground.build import build as build_simulator
 from services.slam.build import build as build_slam
 from uvf.models.scenario import ROOT, load_scenario
-from uvf.runtime.messages.mapped_floor import MappedFloor
+from uvf.runtime.messages.maps.mapped_floor import MappedFloor
 from uvf.runtime.time.lockstep import Lockstep
 
 FIRST, LAST = 3.0, SETTLING + 15.0  # s

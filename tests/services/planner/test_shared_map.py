@@ -8,7 +8,7 @@ from schemas.messages import Grid
 from tests.services.planner.planner_bench import START, Bench, asked, planner
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose
-from uvf.runtime.messages.height_grids import heights_message, heights_of
+from uvf.runtime.messages.maps.height_grids import heights_message, heights_of
 
 SIDE = 0.25
 BEYOND = (7.0, 1.0)

@@ -15,7 +15,7 @@ from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.world.map_file import GridMap, save_map
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import occupancy_cells, quaternion, yaw_of
-from uvf.runtime.messages.grids import as_map, as_message
+from uvf.runtime.messages.maps.grids import as_map, as_message
 from uvf.runtime.state.saved_maps import find_map
 
 CELLS = np.array([[0, 100, -1], [0, 0, 50]], dtype=np.int8)

@@ -23,7 +23,7 @@ from uvf.guidance.fence_plan import fence_fit, mission_fault, tightest
 from uvf.guidance.route import Circle, Place
 from uvf.models.mission.fence import FenceAction
 from uvf.models.vehicle.flight_params import AirParams
-from uvf.runtime.messages.fences import fence_fault, fencing
+from uvf.runtime.messages.plans.fences import fence_fault, fencing
 
 RANK = {FlightMode.HOLD: FailsafeAction.HOLD, FlightMode.RETURN: FailsafeAction.RETURN, FlightMode.LAND: FailsafeAction.LAND}
 FENCED = "fence", "breach"  # rows whose action is the fence's

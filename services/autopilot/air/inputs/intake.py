@@ -12,8 +12,8 @@ from uvf.guidance.route import Circle
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
 from uvf.runtime.messages.convert import seconds, wxyz
-from uvf.runtime.messages.plan_ids import mission_id
-from uvf.runtime.messages.plan_items import place_of
+from uvf.runtime.messages.plans.plan_ids import mission_id
+from uvf.runtime.messages.plans.plan_items import place_of
 
 OLDEST_FIX, OLDEST_SAMPLE = 1.0, 5.0  # s
 AHEAD = 0.1  # s by which a sensor's clock may be before ours

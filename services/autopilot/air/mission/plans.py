@@ -12,7 +12,7 @@ from uvf.guidance.flyable import advice
 from uvf.guidance.route import Place
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.messages.plan_items import place_of, plan_items
+from uvf.runtime.messages.plans.plan_items import place_of, plan_items
 
 
 class ActivePlans:

@@ -34,7 +34,7 @@ from uvf.models.vehicle.file import VehicleFile
 from uvf.models.vehicle.sensors import Sensors
 from uvf.runtime.mavlink.geo import GeoPosition
 from uvf.runtime.messages.convert import array, seconds
-from uvf.runtime.messages.fences import fencing
+from uvf.runtime.messages.plans.fences import fencing
 
 SILENT_AFTER = 2.0  # s of simulation time
 HOME_FENCE = "max_distance", "max_height"

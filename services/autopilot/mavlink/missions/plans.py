@@ -21,7 +21,7 @@ from uvf.runtime.mavlink.mission_items import (
     to_wire,
     unpacked,
 )
-from uvf.runtime.messages.plan_ids import fence_id, rally_id
+from uvf.runtime.messages.plans.plan_ids import fence_id, rally_id
 
 Item = mav.MAVLink_mission_item_int_message
 P = TypeVar("P", Mission, Fence, RallyPoints)

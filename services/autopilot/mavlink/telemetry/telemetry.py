@@ -18,7 +18,7 @@ from uvf.mavlink import dialect as mav
 from uvf.mavlink.scaling import I32, U16, whole
 from uvf.mavlink.scaling import compass as compass_of
 from uvf.runtime.messages.convert import array, wxyz
-from uvf.runtime.messages.plan_ids import fence_id, rally_id
+from uvf.runtime.messages.plans.plan_ids import fence_id, rally_id
 
 RANGE_ERROR = 1.0  # m, 1 sigma of the distance to one satellite
 Message = mav.MAVLink_message | None

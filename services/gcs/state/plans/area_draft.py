@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from schemas.messages import Fence, FenceZone, RallyPoints, Vector3
 from services.gcs.state.remembered import Remembered
 from uvf.models.mission.fence import ACTIONS, MOST_VERTICES, MOST_ZONES
-from uvf.runtime.messages.fences import fence_fault
+from uvf.runtime.messages.plans.fences import fence_fault
 
 Point = tuple[float, float]
 

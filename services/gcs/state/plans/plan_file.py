@@ -11,7 +11,7 @@ from services.gcs.state.plans.plan_draft import MOST_ITEMS
 from uvf.models.mission.fence import MOST_VERTICES, FenceFile, ZoneFile, zones_of
 from uvf.models.mission.file import Waypoint
 from uvf.models.yaml_data import FileLocation, convert, parse_yaml
-from uvf.runtime.messages.mission_files import item_from_file
+from uvf.runtime.messages.plans.mission_files import item_from_file
 
 Metres = Annotated[float, msgspec.Meta(ge=-1e6, le=1e6)]
 DECIMALS = 3

@@ -9,7 +9,7 @@ from services.gcs.state.plans.plan_draft import PLACED, PlanDraft
 from uvf.guidance import flyable
 from uvf.guidance.mission_preview import MissionPreview, places_passed
 from uvf.models.vehicle.flight_params import AirParams
-from uvf.runtime.messages.plan_items import plan_items
+from uvf.runtime.messages.plans.plan_items import plan_items
 
 Floats = NDArray[np.float64]
 

@@ -22,7 +22,7 @@ from uvf.runtime.log.reading import log_attachments, read_log
 from uvf.runtime.log.replay import logged_site
 from uvf.runtime.messages.convert import pose2_of, seconds
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
-from uvf.runtime.messages.scans import Shape, beams_of, is_usable, shape_of
+from uvf.runtime.messages.readings.scans import Shape, beams_of, is_usable, shape_of
 from uvf.sensors.fitted import sweeping_of
 from uvf.sensors.sweeping import AT_ONCE, Sweeping
 from uvf.slam.deskew import straightened

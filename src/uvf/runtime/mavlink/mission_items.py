@@ -10,7 +10,7 @@ from uvf.mavlink.names import bad_frame, command_name
 from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES, GeoPosition
 from uvf.runtime.mavlink.limits import too_far, too_high, too_wide
 from uvf.runtime.messages.convert import array
-from uvf.runtime.messages.plan_ids import mission_id
+from uvf.runtime.messages.plans.plan_ids import mission_id
 from uvf.runtime.messages.validation import error_in
 
 ORIGIN = struct.Struct("<BHB4fiif")

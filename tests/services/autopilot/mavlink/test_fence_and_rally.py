@@ -10,7 +10,7 @@ from tests.services.autopilot.mavlink.missions.test_missions import LAT, LON, NA
 from tests.services.autopilot.mavlink.qgroundcontrol import QGroundControl
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig, acks, long, of, texts
 from uvf.mavlink import dialect as mav
-from uvf.runtime.messages.fences import fencing
+from uvf.runtime.messages.plans.fences import fencing
 
 STEP = 20_000  # 1e-7 deg, about 220 m
 

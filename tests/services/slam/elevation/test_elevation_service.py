@@ -16,7 +16,7 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.log.bounds import PAYLOAD_MOST
 from uvf.runtime.messages.convert import planar_pose, stamp
 from uvf.runtime.messages.frames import FrameBuffer
-from uvf.runtime.messages.height_grids import heights_message, heights_of
+from uvf.runtime.messages.maps.height_grids import heights_message, heights_of
 from uvf.runtime.messages.validation import error_in
 from uvf.slam.elevation.elevation_map import LONGEST, MOST_COLUMNS
 

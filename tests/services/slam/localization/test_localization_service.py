@@ -22,7 +22,7 @@ from uvf.models.world.map_file import save_map
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, stamp, yaw_of
 from uvf.runtime.messages.frames import FrameBuffer
-from uvf.runtime.messages.grids import as_message
+from uvf.runtime.messages.maps.grids import as_message
 from uvf.slam.localization import known_map
 from uvf.slam.localization.localizer import HALF_SURE
 from uvf.slam.localization.params import FilterParams

@@ -9,7 +9,7 @@ from services.autopilot.air.inputs import intake
 from uvf.guidance.flight_plan import ItemKind
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.messages.plan_items import plan_items
+from uvf.runtime.messages.plans.plan_items import plan_items
 
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
 

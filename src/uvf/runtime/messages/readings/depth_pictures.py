@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from schemas.messages import CameraCalibration, CompressedImage
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.messages.pictures import decoded, intrinsics_of
+from uvf.runtime.messages.readings.pictures import decoded, intrinsics_of
 
 Floats = NDArray[np.float64]
 
