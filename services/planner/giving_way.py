@@ -8,7 +8,7 @@ from services.planner.team import Teammates
 from uvf.maths.se2 import Pose2
 from uvf.planning.navigation.directive import Action, Directive
 from uvf.planning.navigation.global_routes import GlobalRoutes
-from uvf.planning.navigation.right_of_way import AHEAD, Traveller, give_way, is_first_of_circle
+from uvf.planning.navigation.right_of_way import AHEAD, Traveller, give_way, is_first_of_circle, that_meet
 from uvf.planning.smoothing import from_place, way_along
 
 BLURRED = 0.1  # m by which the map may show a vehicle of the team elsewhere
@@ -30,9 +30,12 @@ class GivingWay:
         if not others:
             return directive
         own, passed = from_place(directive.path, here[:2])
-        own = own[way_along(own) <= AHEAD]
-        clearance = self._routes.map_clearance(own, team.discs + np.array((0.0, 0.0, BLURRED)))
-        wait = give_way(Traveller(self._name, own, self._radius), clearance, others)
+        traveller = Traveller(self._name, own[way_along(own) <= AHEAD], self._radius)
+        others = that_meet(traveller, others)
+        if not others:
+            return directive
+        clearance = self._routes.map_clearance(traveller.path, team.discs + np.array((0.0, 0.0, BLURRED)))
+        wait = give_way(traveller, clearance, others)
         if wait is None:
             return directive
         self.waits_for = wait.for_whom

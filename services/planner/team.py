@@ -31,6 +31,8 @@ class Teammates:
         self._been: deque[dict[str, Point]] = deque(maxlen=LATELY)
         self._said: dict[str, NavStatus] = {}
         self._paths: dict[str, PosesInFrame] = {}
+        self._points: dict[str, tuple[PosesInFrame, Floats]] = {}
+        """(n, 2) m, of the paths that were looked at last."""
 
     def hear(self, poses: dict[str, PoseInFrame], said: dict[str, NavStatus], paths: dict[str, PosesInFrame]) -> None:
         """What they publish now, by name; the vehicle's own are left out."""
@@ -59,10 +61,18 @@ class Teammates:
         for name, place in self.places.items():
             path = self._paths.get(name)
             if path is not None and path.poses:
-                points = np.array([(pose.position.x, pose.position.y) for pose in path.poses[:MOST]])
-                rest, _ = from_place(points[(np.abs(points) < FARTHEST).all(axis=1)], place)
+                rest, _ = from_place(self._points_of(name, path), place)
                 found.append(Traveller(name, transform(self._map_from_world, rest), self._radius_of(name)))
         return found
+
+    def _points_of(self, name: str, path: PosesInFrame) -> Floats:
+        """(n, 2) m, of a path that may be the one of the last time."""
+        before, points = self._points.get(name, (None, np.zeros((0, 2))))
+        if before is not path:
+            points = np.array([(pose.position.x, pose.position.y) for pose in path.poses[:MOST]])
+            points = points[(np.abs(points) < FARTHEST).all(axis=1)]
+            self._points[name] = path, points
+        return points
 
     @property
     def discs(self) -> Floats:

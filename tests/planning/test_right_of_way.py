@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from uvf.planning.navigation.right_of_way import ROOM, Traveller, give_way, is_first_of_circle
+from uvf.planning.navigation.right_of_way import ROOM, Traveller, give_way, is_first_of_circle, that_meet
 from uvf.planning.smoothing import first_part, from_place, length, resample
 
 RADIUS = 0.125  # m
@@ -125,3 +125,21 @@ def test_a_path_is_cut_where_it_is_said():
 )
 def test_of_those_who_wait_for_each_other_the_first_by_name_drives(own, for_whom, waiting, drives):
     assert is_first_of_circle(own, for_whom, waiting) is drives
+
+
+def test_who_comes_nowhere_near_makes_nobody_wait():
+    rng = np.random.default_rng(4)
+    waited = 0
+    for _ in range(300):
+        own, *others = (traveller(name, path(*rng.uniform(-3.0, 3.0, (3, 2)))) for name in "bacd")
+        met = that_meet(own, others)
+        waited += waits(own, *others) is not None
+        assert waits(own, *met) == waits(own, *others)
+        assert len(met) <= len(others)
+    assert 30 < waited < 290
+
+
+def test_who_has_no_way_left_meets_nobody():
+    nowhere = traveller("b", np.zeros((0, 2)))
+    assert that_meet(nowhere, [traveller("a", path((0.0, 0.0), (1.0, 0.0)))]) == []
+    assert that_meet(traveller("a", path((0.0, 0.0), (1.0, 0.0))), [nowhere]) == []

@@ -52,6 +52,7 @@ class GlobalRoutes:
         self.shared_is_too_large = False
         """Whether another vehicle's map is left out, because both maps together have too many cells."""
         self._shown: bytes | None = None
+        self._given: tuple[Cells, Frame] | None = None
         self._driven: deque[Point] = deque(maxlen=DRIVEN_MOST)
 
     def drive(self, here: Point) -> None:
@@ -92,12 +93,15 @@ class GlobalRoutes:
         lethal = lethal[~self._walls[lethal[:, 0], lethal[:, 1]]]  # a wall of the map is where the map has it
         free = cells_of(self._centres(FREE_SPACE), frame, cells.shape)[0] if self._trusts_sight else lethal[:0]
         shown = lethal.tobytes() + free.tobytes()
-        changed = shown != self._shown
-        if changed:
+        changed = False
+        if shown != self._shown:
             self._shown, cells = shown, cells.copy()
             cells[free[:, 0], free[:, 1]] = 0
             cells[lethal[:, 0], lethal[:, 1]] = 100
-            self._planner.see(cells, frame)
+            changed = self._given is None or frame != self._given[1] or not np.array_equal(cells, self._given[0])
+            if changed:  # most of what is seen free is free in the map, too
+                self._given = cells, frame
+                self._planner.see(cells, frame)
         return self._planner.stand(here) | changed
 
     def plan(self, pose: Pose2, goal: NavigationGoal) -> Route:
@@ -136,10 +140,9 @@ class GlobalRoutes:
         first, last = np.maximum(at.min(axis=0) - reach, 0), at.max(axis=0) + reach + 1
         taken = cells[first[0] : last[0], first[1] : last[1]] >= OCCUPIED
         rows, columns = np.indices(taken.shape, sparse=True)
-        for x, y, radius in team.tolist():
-            column, row = ((place - low) / frame[0] - 0.5 - begin for place, low, begin in zip((x, y), frame[1], first[::-1], strict=True))
-            window = around((int(row), int(column)), ceil(radius / frame[0]) + 1)
-            taken[window][np.hypot(rows[window[0]] - row, columns[:, window[1]] - column) * frame[0] <= radius] = False
+        for row, column, radius in _within(team, frame, first, taken.shape):
+            window = around((int(row), int(column)), ceil(radius) + 1)
+            taken[window][np.hypot(rows[window[0]] - row, columns[:, window[1]] - column) <= radius] = False
         out[inside] = ((distance_field(taken) - 0.5) * frame[0])[tuple((at - first).T)]
         return out
 
@@ -161,3 +164,12 @@ class GlobalRoutes:
         """(n, 2) m centres of the layer's cells of a value."""
         out: Floats = (np.argwhere(self._layer.cells == value)[:, ::-1] + 0.5) * self._layer.resolution + np.array(self._layer.origin)
         return out
+
+
+def _within(discs: Floats, frame: Frame, first: NDArray[np.int64], shape: tuple[int, ...]) -> list[list[float]]:
+    """Row, column and radius [cells] of those of the discs (k, 3) [m] that reach into a window of the map that begins at ``first``."""
+    middles = (discs[:, 1::-1] - frame[1][::-1]) / frame[0] - 0.5 - first
+    radii = discs[:, 2:] / frame[0]
+    near = ((middles > -radii - 1) & (middles < shape + radii)).all(axis=1)
+    found: list[list[float]] = np.hstack((middles, radii))[near].tolist()
+    return found

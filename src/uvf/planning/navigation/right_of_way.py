@@ -50,6 +50,12 @@ def give_way(own: Traveller, clearance: Floats, others: Sequence[Traveller]) -> 
     return min((wait for wait in waits if wait is not None), default=None)
 
 
+def that_meet(own: Traveller, others: Sequence[Traveller]) -> list[Traveller]:
+    """Those of the others whose path comes so near to its own that one may have to wait; only they need ``give_way``."""
+    near = [(other, first_part(other.path, LOOKED)) for other in others if len(other.path)]
+    return [other for other, path in near if len(own.path) and cdist(own.path, resample(path)).min() < _apart(own, other)]
+
+
 def is_first_of_circle(own: str, for_whom: str, waiting: Mapping[str, str]) -> bool:
     """Whether vehicles wait for each other in a circle of which ``own`` is the first by name, if it waits ``for_whom``.
 
@@ -63,12 +69,17 @@ def is_first_of_circle(own: str, for_whom: str, waiting: Mapping[str, str]) -> b
 
 
 def _wait(own: Traveller, way: tuple[Floats, Floats], other: Traveller) -> Wait | None:
-    """Where it waits for this one. The middles of two that pass each other are ``apart``, and as much is needed to either side."""
-    (along, clearance), apart = way, own.radius + other.radius + ROOM
+    """Where it waits for this one. As much room as between the middles of two that pass each other is needed to either side."""
+    (along, clearance), apart = way, _apart(own, other)
     for passage in _passages(along, clearance < apart):
         if _comes_first(own, other, (along, passage), apart):
             return Wait(_waiting_place(own.path[: passage.start + 1], along, other.path, apart), other.name)
     return None
+
+
+def _apart(own: Traveller, other: Traveller) -> float:
+    """m between the middles of two that pass each other."""
+    return own.radius + other.radius + ROOM
 
 
 def _passages(along: Floats, narrow: Mask) -> list[slice]:

@@ -1,5 +1,7 @@
 """Messages from and to numpy: vectors, quaternions (wxyz), poses, stamps, scans, grids."""
 
+from math import cos, sin
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -58,7 +60,7 @@ def planar_pose(x: float, y: float, yaw: float, z: float = 0.0) -> Pose:
     """Pose on level ground: x, y [m], yaw [rad], at height z [m]."""
     return Pose(
         position=Vector3(x=x, y=y, z=z),
-        orientation=Quaternion(w=float(np.cos(yaw / 2)), z=float(np.sin(yaw / 2))),
+        orientation=Quaternion(w=cos(yaw / 2), z=sin(yaw / 2)),
     )
 
 
