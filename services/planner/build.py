@@ -53,7 +53,7 @@ def _hosts(member: MissionVehicle) -> list[ServiceInstance]:
         return PlannerService(world_from_map, vehicle, planner)
 
     def tracker_service() -> TrackerService:
-        return TrackerService(body, footprint, sensors_of(), tracker)
+        return TrackerService(member.name, (body, footprint), sensors_of(), tracker)
 
     return [ServiceInstance(PlannerService, planner_service, member.name), ServiceInstance(TrackerService, tracker_service, member.name)]
 

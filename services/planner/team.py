@@ -17,6 +17,7 @@ Floats = NDArray[np.float64]
 LATELY = 40  # times that they were heard
 MOST = 2000  # points of another vehicle's path that are looked at
 LARGEST = 2.5  # m, of the radius that a vehicle may say it has
+ABOVE = 2.0  # m above the vehicle, from where on nobody is in its way
 FARTHEST = 1e5  # m from the world's origin that a place may lie
 AT_IT = (NavStatus.DRIVING, NavStatus.RECOVERING)
 
@@ -29,6 +30,7 @@ class Teammates:
         """Where they are [m, world]; without those whose place is none."""
         self._own, self._radius, self._map_from_world = own, radius, inverse(world_from_map)
         self._been: deque[dict[str, Point]] = deque(maxlen=LATELY)
+        self._flying: set[str] = set()
         self._said: dict[str, NavStatus] = {}
         self._paths: dict[str, PosesInFrame] = {}
         self._points: dict[str, tuple[PosesInFrame, Floats]] = {}
@@ -38,6 +40,9 @@ class Teammates:
         """What they publish now, by name; the vehicle's own are left out."""
         found = {name: (pose.pose.position.x, pose.pose.position.y) for name, pose in poses.items() if name != self._own}
         self.places = {name: place for name, place in sorted(found.items()) if all(abs(part) < FARTHEST for part in place)}
+        own = poses.get(self._own)
+        highest = ABOVE + (0.0 if own is None else own.pose.position.z)
+        self._flying = {name for name in self.places if poses[name].pose.position.z > highest}
         self._been.append(self.places)
         self._said, self._paths = said, paths
 
@@ -73,6 +78,12 @@ class Teammates:
             points = points[(np.abs(points) < FARTHEST).all(axis=1)]
             self._points[name] = path, points
         return points
+
+    @property
+    def present(self) -> Floats:
+        """(n, 3) what those who do not fly above it cover now: x, y, radius [m, map]."""
+        names = [name for name in self.places if name not in self._flying]
+        return np.column_stack((self._in_map([self.places[name] for name in names]), [self._radius_of(name) for name in names]))
 
     @property
     def discs(self) -> Floats:

@@ -20,6 +20,7 @@ from schemas.messages import (
     MovingObstacles,
     NavDirective,
     NavReport,
+    NavStatus,
     Odometry,
     PoseInFrame,
     PosesInFrame,
@@ -29,12 +30,14 @@ from schemas.messages import (
 from services.planner.directives import directive_of, report_message
 from services.planner.masks import MaskReader
 from services.planner.obstacle_sensors import ObstacleSensors, OtherReadings
-from uvf.maths.se2 import IDENTITY, Pose2
+from services.planner.team import Teammates
+from uvf.maths.se2 import IDENTITY, Pose2, transform
 from uvf.models.keys import key, plain
 from uvf.models.params import Params
 from uvf.models.vehicle.file import GroundBody
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation
+from uvf.planning.costmap.unseen_discs import unseen_points
 from uvf.planning.local.controller import ControllerSettings, Drive, LocalController
 from uvf.planning.local.goal_checker import GoalTolerances
 from uvf.planning.local.mppi import Mppi, MppiSettings
@@ -45,7 +48,7 @@ from uvf.planning.moving.tracks import MovingObjects
 from uvf.planning.navigation.directive import Action, Directive
 from uvf.planning.navigation.execution import Executor
 from uvf.planning.smoothing import first_part
-from uvf.runtime.contract.declaration import Reads, Writes, every, optional, topic
+from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, every, optional, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import cost_grid, pose2_of, seconds, stamp, yaw_of
 
@@ -54,6 +57,7 @@ Positive = Annotated[float, Meta(gt=0)]
 
 PERIOD = 0.1  # s
 KEEP_OUT_REACH = 3.0  # m
+TEAM_REACH = 3.0  # m
 SCAN_MAX_AGE = 0.6  # s; without sight nothing moves
 SIZE = 8.0  # m, side of the window in which obstacles are remembered
 FARTHEST = 0.95 * SIZE / 2  # m
@@ -100,6 +104,8 @@ class TrackerService(Service):
         contact: list[Contact] = optional(every(topics.CONTACT))
         keep_out: Grid | None = optional(topics.KEEP_OUT)
         speed_map: Grid | None = optional(topics.SPEED_MAP)
+        team: dict[str, PoseInFrame] = each_vehicle(optional(topics.POSE))
+        team_nav: dict[str, NavStatus] = each_vehicle(optional(topics.NAV_STATUS))
 
     class Outputs(Writes):
         """Velocity command, report and events."""
@@ -112,8 +118,10 @@ class TrackerService(Service):
 
     params: TrackerParams
 
-    def __init__(self, body: GroundBody, footprint: RobotFootprint, sensors: ObstacleSensors, params: TrackerParams) -> None:
+    def __init__(self, name: str, vehicle: tuple[GroundBody, RobotFootprint], sensors: ObstacleSensors, params: TrackerParams) -> None:
         self.params = params
+        body, footprint = vehicle
+        self._team = Teammates(name, footprint.circumscribed_radius, IDENTITY)
         self._body, self._footprint = body, footprint
         self._sensors, self._placer = sensors, sensors.placer
         self._pose: Pose2 = IDENTITY
@@ -138,6 +146,9 @@ class TrackerService(Service):
             controller.see(seen.t, seen.pose, seen.eye, seen.points, seen.ranges)
             if (mask := self._keep_out.take(now.keep_out)) is not None:
                 controller.keep_out(mask.kept_out_near(self._pose[:2], KEEP_OUT_REACH))
+            self._team.hear(now.team, now.team_nav, {})
+            shown = transform(seen.pose, seen.points[seen.ranges > 0.0])
+            controller.keep_out(unseen_points(self._team.present, shown, self._pose[:2], TEAM_REACH))
         if t - self._placer.t > SCAN_MAX_AGE:
             return self.stale(t, ("scan",))
         if now.odometry is not None:

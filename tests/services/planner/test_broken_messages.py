@@ -51,7 +51,7 @@ class Bench:
             PlannerService: lambda: PlannerService(
                 IDENTITY, PlannedVehicle(FOOTPRINT, sensors_of(FOOTPRINT), 0.45, True, "v"), PlannerParams()
             ),
-            TrackerService: lambda: TrackerService(BODY, FOOTPRINT, sensors_of(FOOTPRINT), TrackerParams()),
+            TrackerService: lambda: TrackerService("v", (BODY, FOOTPRINT), sensors_of(FOOTPRINT), TrackerParams()),
         }
         self.shells = [ServiceRunner(ServiceInstance(kind, make, "v"), self.bus, self.told.append) for kind, make in makers.items()]
 

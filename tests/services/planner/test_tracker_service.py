@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from schemas.messages import LaserScan, NavDirective, NavReport, Pose, PoseInFrame, PosesInFrame, Vector3
+from schemas.messages import LaserScan, NavDirective, NavReport, NavStatus, Pose, PoseInFrame, PosesInFrame, Vector3
 from services.planner.scan_placing import ScanPlacer
 from services.planner.tracker_service import TrackerParams, TrackerService
 from tests.runtime.stepping import stale, stepped
@@ -41,7 +41,7 @@ def with_post(seen, x, y, yaw, radius=0.15):
 
 FOOTPRINT = RobotFootprint.circle(BODY.radius)
 EAST = PosesInFrame(poses=[Pose(position=Vector3(x=0.1 * i)) for i in range(31)])
-NOTHING = NOTHING_ELSE | dict.fromkeys(("odometry", "keep_out", "speed_map"))
+NOTHING = NOTHING_ELSE | dict.fromkeys(("odometry", "keep_out", "speed_map")) | {"team": {}, "team_nav": {}}
 FOLLOW = NavDirective(number=1, action=NavDirective.FOLLOW)
 
 
@@ -49,7 +49,9 @@ class TrackerBench:
     """A vehicle that starts at the world's origin and looks east; a wall ``ahead`` [m] of it there, the path leads 3 m east."""
 
     def __init__(self, base_from_lidar=IDENTITY, sensors=NO_OTHERS, **params):
-        self.service = TrackerService(BODY, FOOTPRINT, sensors_of(FOOTPRINT, base_from_lidar, sensors=sensors), TrackerParams(**params))
+        self.service = TrackerService(
+            "v", (BODY, FOOTPRINT), sensors_of(FOOTPRINT, base_from_lidar, sensors=sensors), TrackerParams(**params)
+        )
         self.t = 0.0
         self.pose = np.zeros(3)
         self.commands = []
@@ -167,7 +169,9 @@ def test_what_a_scanner_sees_that_hangs_upside_down_is_on_the_side_where_it_is()
     """Its right is the vehicle's left: what it sees there is kept in mind as an obstacle on the left."""
     beside = LaserScan(timestamp=stamp(1.0), start_angle=-1.0, end_angle=-0.8, ranges=[0.5] * 9)
     poses = [PoseInFrame(timestamp=stamp(1.0), pose=planar_pose(0.0, 0.0, 0.0))]
-    service = TrackerService(BODY, FOOTPRINT, sensors_of(FOOTPRINT, Transform(from_euler(np.pi, 0.0, 0.0), np.zeros(3))), TrackerParams())
+    service = TrackerService(
+        "v", (BODY, FOOTPRINT), sensors_of(FOOTPRINT, Transform(from_euler(np.pi, 0.0, 0.0), np.zeros(3))), TrackerParams()
+    )
     stepped(service, 1.0, directive=FOLLOW, path=EAST, pose=poses, scan=beside, **NOTHING)
     seen = service._executor.controller.layer.lethal_near((0.0, 0.0), 1.0)
     assert len(seen) >= 2 and (seen[:, 1] > 0.3).all()
@@ -215,7 +219,7 @@ def test_a_sweep_counts_when_the_pose_at_its_last_beam_is_known():
 
 def test_a_slow_scan_is_as_old_as_its_last_beam():
     wall = scan(1.0, ahead=3.0)
-    service = TrackerService(BODY, FOOTPRINT, sensors_of(FOOTPRINT, sweeping=Sweeping(0.5)), TrackerParams())
+    service = TrackerService("v", (BODY, FOOTPRINT), sensors_of(FOOTPRINT, sweeping=Sweeping(0.5)), TrackerParams())
     told = NOTHING | {"directive": FOLLOW, "path": EAST, "scan": wall}
     poses = [PoseInFrame(timestamp=stamp(0.02 * k), pose=planar_pose(0.0, 0.0, 0.0)) for k in range(100)]
     assert stepped(service, 2.0, pose=poses, **told)["drive"].linear > 0.05
@@ -286,3 +290,40 @@ def test_people_see_what_it_takes_for_moving():
     assert (post.position.x, post.position.y) == pytest.approx((1.5, 0.24), abs=0.08)
     assert (post.velocity.x, post.velocity.y) == pytest.approx((0.0, 0.6), abs=0.12)
     assert post.radius == pytest.approx(0.15, abs=0.04)
+
+
+def mate(x, y, z=0.0):
+    """One of the team, as it says where it is [m]; its radius is 20 cm."""
+    return {"team": {"low": PoseInFrame(pose=planar_pose(x, y, 0.0, z))}, "team_nav": {"low": NavStatus(radius=0.2)}}
+
+
+def test_one_of_the_team_that_the_lidar_looks_over_is_not_driven_into():
+    bench = TrackerBench()
+    for _ in range(120):
+        bench.step(1, ahead=5.0, moves=True, **mate(1.5, 0.0))
+    distances = np.hypot(*(np.array(bench.places) - (1.5, 0.0)).T)
+    assert distances.min() > 0.2 + BODY.radius
+    assert bench.pose[0] > 2.5
+
+
+@pytest.mark.parametrize(
+    "where", [(1.5, 0.0, 60.0), (np.nan, 0.0, 0.0), (0.05, 0.0, 0.0)], ids=["flies", "nowhere", "wrong about its place"]
+)
+def test_who_cannot_be_in_the_way_is_none(where):
+    bench = TrackerBench().step(60, ahead=5.0, moves=True, **mate(*where))
+    assert bench.pose[0] > 1.6
+    assert np.abs(np.array(bench.places)[:, 1]).max() < 0.1
+
+
+def test_one_of_the_team_that_the_lidar_sees_is_where_it_is_seen():
+    bench = TrackerBench()
+    bench.post = (1.5, 0.6)
+    bench.step(60, ahead=5.0, moves=True, **mate(1.5, 0.42))
+    assert bench.pose[0] > 1.6
+    assert np.abs(np.array(bench.places)[:, 1]).max() < 0.2
+
+
+def test_where_one_of_the_team_has_been_the_way_is_free_again():
+    bench = TrackerBench().step(10, ahead=5.0, **mate(1.0, 0.0)).step(60, ahead=5.0, moves=True, **mate(1.0, 2.0))
+    assert bench.pose[0] > 1.6
+    assert np.abs(np.array(bench.places)[:, 1]).max() < 0.1
