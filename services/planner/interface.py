@@ -9,6 +9,7 @@ from schemas.messages import (
     Event,
     Fence,
     FollowRequest,
+    FrameTransform,
     GoalRequest,
     Grid,
     LaserScan,
@@ -48,6 +49,8 @@ class Inputs(Reads):
     report: NavReport | None = optional(topics.NAV_REPORT)
     keep_out: Grid | None = optional(topics.KEEP_OUT)
     shared: Grid | None = optional(topics.SHARED_MAP)
+    team_map: dict[str, Grid] = each_vehicle(optional(topics.TEAM_MAP))
+    team_place: FrameTransform | None = optional(topics.TEAM_PLACE)
     status: VehicleStatus | None = optional(topics.STATUS)
     mission: Mission | None = optional(topics.MISSION)
     progress: MissionProgress | None = optional(topics.PROGRESS)

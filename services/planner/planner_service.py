@@ -19,6 +19,7 @@ from services.planner.exploration_goals import ExplorationGoals
 from services.planner.giving_way import GivingWay
 from services.planner.goal_desk import GoalDesk
 from services.planner.jobs import IDLE, Job, Orders, ReturnPoints, choose, home_of, mission_target
+from services.planner.lent_maps import team_map
 from services.planner.obstacle_sensors import OtherReadings
 from services.planner.params import PlannerParams
 from services.planner.planned_vehicle import PlannedVehicle
@@ -99,7 +100,8 @@ class PlannerService(Service):
             return self.stale(t, ("pose",))
         self._fit()
         self._ground.keep_out(now.keep_out)
-        if fault := self._ground.share(now.shared, TerrainLimits(self.params.max_step, self.params.max_slope)):
+        team = team_map(self._vehicle.name, now.team_place, now.team_map)
+        if fault := self._ground.share(now.shared, TerrainLimits(self.params.max_step, self.params.max_slope), team):
             self._tell(t, "the map of another vehicle is left out", fault, Event.WARNING)
         changed = self._ground.look(t, now.map, now.scan, OtherReadings(now.depth, now.info, now.sonar, now.contact))
         self._team.hear(now.team, now.team_nav, now.team_path)

@@ -5,21 +5,18 @@ from math import inf
 import numpy as np
 
 from schemas.messages import Grid, LaserScan, PoseInFrame
+from services.planner.lent_maps import LentMaps
 from services.planner.masks import MaskReader
 from services.planner.obstacle_sensors import ObstacleSensors, OtherReadings
 from uvf.maths.se2 import Pose2, compose, inverse, transform
-from uvf.models.yaml_data import BadInput
 from uvf.planning.costmap.costmap import Costmap
 from uvf.planning.costmap.hidden_obstacles import HiddenObstacles
 from uvf.planning.costmap.obstacle_layer import BeamObservation, ObstacleLayer
-from uvf.planning.costmap.shared_map import SharedMap
-from uvf.planning.costmap.terrain import TerrainLimits, terrain_obstacles
+from uvf.planning.costmap.terrain import TerrainLimits
 from uvf.planning.global_planner import GlobalPlanner
 from uvf.planning.navigation.directive import Directive
 from uvf.planning.navigation.global_routes import GlobalRoutes
 from uvf.runtime.messages.convert import cost_grid, occupancy_cells, pose2_of, seconds
-from uvf.runtime.messages.maps.grids import as_map
-from uvf.runtime.messages.maps.height_grids import has_heights, heights_of
 
 SIZE, RESOLUTION = 8.0, 0.05  # m, of the window in which obstacles are remembered that the map does not show
 TELL_PERIOD = 2.0  # s between two costmaps that are told
@@ -38,8 +35,7 @@ class PlanningGround:
         self._layer = ObstacleLayer(SIZE, RESOLUTION, LIFETIME)
         self._hidden = HiddenObstacles(SIZE, RESOLUTION, LIFETIME)
         self._keep_out = MaskReader()
-        self._shared: Grid | None = None
-        self._limits: TerrainLimits | None = None
+        self._lent = LentMaps(self._map_from_world)
         self._told_fault = ""
         self._map_stamp = -1.0
         self._cleared = -1
@@ -60,16 +56,15 @@ class PlanningGround:
         if mask is not None and self._keep_out.is_new:
             self.routes.keep_out(mask, self._world_from_map)
 
-    def share(self, grid: Grid | None, limits: TerrainLimits) -> str:
-        """Takes a map that another vehicle has made; what has come to be wrong with it, "" if nothing or known before."""
-        if grid is not None and (limits != self._limits or (grid is not self._shared and grid != self._shared)):
-            self._shared, self._limits, self._told_fault = grid, limits, ""
-            try:
-                cells = terrain_obstacles(heights_of(grid), grid.cell_size.x, limits) if has_heights(grid) else as_map(grid).cells
-            except BadInput as error:
-                return str(error)
-            map_from_cells = compose(self._map_from_world, pose2_of(grid.pose))
-            self.routes.share(SharedMap(cells, grid.cell_size.x, map_from_cells, outranks=has_heights(grid)))
+    def share(self, handed: Grid | None, limits: TerrainLimits, team: tuple[Grid, Pose2] | None) -> str:
+        """Takes maps that others have made, as in ``LentMaps``; what has come to be wrong with them, "" if nothing or known before."""
+        before = self._lent.lent
+        fault = self._lent.take(handed, limits, team)
+        if self._lent.lent is not before:
+            self.routes.share(self._lent.lent)
+            self._told_fault = ""
+        if fault:
+            return fault
         fault = "with the vehicle's own map it is too large to plan on; share an area of it" if self.routes.shared_is_too_large else ""
         news, self._told_fault = fault if fault != self._told_fault else "", fault
         return news

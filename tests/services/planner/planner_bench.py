@@ -22,8 +22,10 @@ from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
 
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
-NOBODY = {"team": {}, "team_nav": {}, "team_path": {}}
-NOTHING = NOTHING_ELSE | NOBODY | dict.fromkeys(("scan", "report", "keep_out", "shared", "mission", "progress", "bounds", "rally"))
+NOBODY = {"team": {}, "team_nav": {}, "team_path": {}, "team_map": {}}
+NOTHING = (
+    NOTHING_ELSE | NOBODY | dict.fromkeys(("scan", "report", "keep_out", "shared", "team_place", "mission", "progress", "bounds", "rally"))
+)
 START = (10.0, 20.0, np.pi / 2)
 """The map lies here in the world, turned: map x is world y."""
 

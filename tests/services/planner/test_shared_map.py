@@ -6,8 +6,9 @@ import pytest
 
 from schemas.messages import Grid
 from tests.services.planner.planner_bench import START, Bench, asked, planner
+from uvf.maths.se2 import Pose2
 from uvf.planning.costmap.footprint import RobotFootprint
-from uvf.runtime.messages.convert import occupancy_grid, planar_pose
+from uvf.runtime.messages.convert import occupancy_cells, occupancy_grid, planar_frame, planar_pose
 from uvf.runtime.messages.maps.height_grids import heights_message, heights_of
 
 SIDE = 0.25
@@ -131,4 +132,65 @@ def test_other_limits_are_heeded_at_once():
     made.service.params = msgspec.structs.replace(made.service.params, max_step=0.1)
     made.step(6, shared=shared)
     across = made.path[np.abs(made.path[:, 0] - 5.0) < 0.1]
+    assert len(across) and (across[:, 1] < 0.4).all()
+
+
+TEAM_FROM_MAP = Pose2(-1.0, 4.0, np.pi / 2)
+
+
+def of_team(shape=(240, 60), place=TEAM_FROM_MAP, first="mate"):
+    """A merged map, all of it free, as wide as the vehicle's own one, that reaches from 2 m before that to 10 m ahead."""
+    grid = occupancy_grid(np.zeros(shape, dtype=np.int8), 0.05, -4.0, 2.0, f"{first}/map", 0.0)
+    return {"team_map": {first: grid}, "team_place": planar_frame(0.0, f"{first}/map", "v/map", place)}
+
+
+def test_the_merged_map_of_its_team_leads_where_others_have_been():
+    led = bench().step(**of_team()).step(goal=[asked(*BEYOND)], **of_team())
+    assert led.said["goal"][0].accepted, led.said["goal"][0].reason
+    led.step(2, **of_team())
+    assert led.path[-1] == pytest.approx(BEYOND, abs=0.1) and abs(led.path[:, 1] - 1.0).max() < 0.2
+
+
+def test_what_others_have_mapped_is_no_frontier():
+    walls = np.full((240, 60), 100, dtype=np.int8)
+    walls[1:-1, 1:-1] = 0
+    shared = of_team()
+    shared["team_map"]["mate"].data = walls.tobytes()
+    found = {}
+    for name, heard in {"alone": {}, "of a team": shared}.items():
+        made = Bench(explores=True)
+        cells = occupancy_cells(open_room()).copy()
+        cells[(0, -1), :60] = 100
+        made.grid = occupancy_grid(cells, 0.05, 0.0, 0.0, "v/map", 0.0)
+        found[name] = made.step(20, **heard).said["nav_status"].explored
+    assert found["alone"] < 0.9
+    assert found["of a team"] > 0.98
+
+
+def test_who_is_alone_again_knows_what_it_knows_itself():
+    made = bench().step(**of_team()).step(**of_team((1, 1), Pose2(0.0, 0.0, 0.0), "v"))
+    assert not made.step(goal=[asked(*BEYOND)], **of_team((1, 1), Pose2(0.0, 0.0, 0.0), "v")).said["goal"][0].accepted
+    made = bench().step(**of_team()).step()
+    assert not made.step(goal=[asked(*BEYOND)]).said["goal"][0].accepted
+
+
+@pytest.mark.parametrize("fault", ["nowhere", "of another one", "without a map", "broken"])
+def test_a_team_that_cannot_be_led_to_is_none(fault):
+    told = of_team(place=Pose2(np.nan, 0.0, 0.0) if fault == "nowhere" else TEAM_FROM_MAP)
+    if fault == "of another one":
+        told["team_place"].child_frame_id = "w/map"
+    elif fault == "without a map":
+        told["team_map"] = {}
+    elif fault == "broken":
+        told["team_map"]["mate"].row_stride = 7
+    made = bench().step(**told)
+    events = [event.text for event in made.said.get("events", [])]
+    assert ("the map of another vehicle is left out" in events) == (fault == "broken")
+    assert not made.step(goal=[asked(*BEYOND)], **told).said["goal"][0].accepted
+
+
+def test_a_map_that_was_handed_over_comes_first():
+    wall = corridor(2.0)
+    led = bench().step(2, shared=wall, **of_team()).step(goal=[asked(*BEYOND)], shared=wall, **of_team()).step(2, shared=wall, **of_team())
+    across = led.path[np.abs(led.path[:, 0] - 5.0) < 0.1]
     assert len(across) and (across[:, 1] < 0.4).all()

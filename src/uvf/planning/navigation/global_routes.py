@@ -66,9 +66,9 @@ class GlobalRoutes:
         if self._drawn is not None:
             self.take(*self._drawn)
 
-    def share(self, shared: SharedMap) -> None:
-        """From now on another vehicle's map lies below the own one, unless both together are too large to plan on."""
-        self._shared = shared
+    def share(self, shared: SharedMap | None) -> None:
+        """From now on another vehicle's map lies below the own one, unless both together are too large to plan on; None: none does."""
+        self._shared, self.shared_is_too_large = shared, False
         if self._drawn is not None:
             self.take(*self._drawn)
 
