@@ -11,6 +11,7 @@ import yaml
 from launch import catalogue, settings
 from launch.scoring.scores import check_criteria
 from launch.vehicles.mission_faults import mission_faults
+from launch.worlds.check import hidden_markers
 from schemas import topics
 from schemas.topics import CLOCK, SYSTEM, Topic
 from uvf.models.scenario import ROOT, MissionVehicle, Scenario, load_scenario
@@ -41,7 +42,7 @@ def check_mission(mission: str) -> list[str]:
     check_criteria(site)
     hosts = catalogue.hosts(site, catalogue.needed(site))
     check_params(site, hosts)
-    return [*wiring_problems(site, hosts), *mission_faults(site), *compose_problems(ROOT / "docker-compose.yml")]
+    return [*wiring_problems(site, hosts), *mission_faults(site), *hidden_markers(site), *compose_problems(ROOT / "docker-compose.yml")]
 
 
 def refuse_problems(site: Scenario, hosts: Sequence[ServiceInstance]) -> None:

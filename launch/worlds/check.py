@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from launch.worlds.report import RESOLUTION
 from uvf.maths.footprint import Footprint, footprint
+from uvf.models.mission.fixtures import MARKER
 from uvf.models.scenario import Scenario
 from uvf.models.shapes.scene import primitives
 from uvf.models.shapes.solid import Solid
@@ -14,6 +16,7 @@ from uvf.models.world.file import WorldFile
 from uvf.models.world.footing import Footing
 from uvf.models.world.geometry import WALL, floor_plan, free_regions, things
 from uvf.models.world.terrain import Relief, relief
+from uvf.models.yaml_data import FileLocation
 
 Floats = NDArray[np.float64]
 
@@ -43,6 +46,17 @@ def blocked_starts(site: Scenario) -> Iterator[str]:
         body, start = member.file.ground, member.entry.start
         if body is not None and (room := footing.at(start.x, start.y).room) < body.radius:
             yield f"start of {name} at ({start.x:g}, {start.y:g}): {room:.2f} m to the nearest thing, its radius is {body.radius:g} m"
+
+
+def hidden_markers(site: Scenario) -> Iterator[str]:
+    """Yields the markers of a mission that stand in something, where nobody can see them or come to them."""
+    posts = {f"{MARKER}{i + 1}" for i in range(len(site.mission.markers))}
+    if posts:
+        bare = msgspec.structs.replace(site.world, cylinders=[post for post in site.world.cylinders if post.name not in posts])
+        footing, place = Footing(bare), FileLocation(str(site.mission_path))
+        for i, marker in enumerate(site.mission.markers):
+            if (room := footing.at(marker.x, marker.y, marker.height).room) < marker.radius:
+                yield f"{place.at('markers', i)}: ({marker.x:g}, {marker.y:g}) is {room:.2f} m from a wall or furniture; move it"
 
 
 def _heights(things: list[Solid], land: Relief | None) -> Iterator[str]:

@@ -14,7 +14,7 @@ from uvf.models.urdf.model import check_urdf, engine_urdf, load_urdf
 from uvf.models.vehicle.file import GroundBody, load_vehicle
 from uvf.models.world.footing import COARSE, Footing
 from uvf.models.world.geometry import solids
-from uvf.models.yaml_data import BadInput
+from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.readings.faults import Faults
 from uvf.sensors.surroundings import Surroundings, aircraft_solid, own_tree, vehicle_tree
@@ -27,6 +27,7 @@ def build(site: Scenario) -> list[ServiceInstance]:
         return []
     footing = Footing(site.world)
     grounds = {name: _checked(site, site.members[name], footing) for name in bodies}
+    _check_chargers(site, footing)
     warm_up()
     return [ServiceInstance(SimGround, lambda: _make(site, bodies, grounds), writes_for=tuple(bodies))]
 
@@ -80,6 +81,13 @@ def _checked(site: Scenario, member: MissionVehicle, footing: Footing) -> float:
             f"but the vehicle has a radius of {body.radius:g} m; move it"
         )
     return height + slope * (body.radius + COARSE)
+
+
+def _check_chargers(site: Scenario, footing: Footing) -> None:
+    for i, charger in enumerate(site.mission.chargers):
+        if footing.at(charger.x, charger.y).room == 0.0:
+            place = FileLocation(str(site.mission_path)).at("chargers", i)
+            raise BadInput(f"{place}: ({charger.x:g}, {charger.y:g}) lies under a wall or furniture, where no vehicle can stand; move it")
 
 
 def _check_rates(member: MissionVehicle, body: GroundBody) -> None:

@@ -4,6 +4,7 @@ import math
 import re
 
 import pytest
+from msgspec.structs import replace
 
 from tests.services.autopilot.air.states import PARAMS
 from uvf.guidance.flight_plan import ItemKind, PlanItem
@@ -19,6 +20,13 @@ def waypoint(north=0.0, east=0.0, **more):
 
 def speed(value):
     return PlanItem(ItemKind.SPEED, HERE, speed=value)
+
+
+@pytest.mark.parametrize("kind", [ItemKind.TAKEOFF, ItemKind.LAND])
+def test_an_airship_neither_takes_off_nor_lands(kind):
+    items = [waypoint(), PlanItem(kind, HERE)]
+    assert fault(items, replace(PARAMS, law="airship")).startswith(f"item 1 is a {kind.name.lower()}: an airship does neither by itself")
+    assert fault(items[:1], replace(PARAMS, law="airship")) == ""
 
 
 @pytest.mark.parametrize(

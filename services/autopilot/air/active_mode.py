@@ -34,6 +34,8 @@ class ActiveMode:
         """Triggered by orders; the mission's is the navigator's."""
         self.context = FlightContext()
         self.formation: FormationLink | None = None
+        self.has_wheels = True
+        """It takes off and lands by itself."""
         self.speed_override = SpeedOverride()
         self._blind = False
         self._climb_to: float | None = None  # m, world; of a take-off that was asked for with a height
@@ -103,7 +105,13 @@ class ActiveMode:
     def _situation(self) -> Situation:
         led = self.formation is not None and self.formation.is_led
         return Situation(
-            self.context.airborne, not self._blind, bool(self.navigator.items), self.context.setpoint is not None, self.stopped, led
+            airborne=self.context.airborne,
+            position_known=not self._blind,
+            has_mission=bool(self.navigator.items),
+            setpoint=self.context.setpoint is not None,
+            stopped=self.stopped,
+            led=led,
+            wheels=self.has_wheels,
         )
 
     @property

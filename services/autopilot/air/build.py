@@ -31,7 +31,6 @@ from uvf.runtime.messages.plans.fences import fence_message, fencing
 from uvf.runtime.messages.plans.mission_files import item_from_file
 from uvf.runtime.messages.plans.plan_items import plan_items
 
-GROUND_ITEMS = (MissionItem.TAKEOFF, MissionItem.LAND)
 NEAREST = 1.0  # s behind a leader: what lies ahead of the follower has to be known
 
 
@@ -112,8 +111,6 @@ def _fence_fault(config: AutopilotConfig, here: Place, params: AirParams) -> str
 
 def _fault(items: list[MissionItem], params: AirParams) -> str:
     """Why these items cannot be flown; empty if they can."""
-    if params.law == "airship" and any(item.kind in GROUND_ITEMS for item in items):
-        return "an airship neither takes off nor lands by itself: let it begin in the air, and leave takeoff and land out"
     try:
         return flyable.fault(plan_items(items), params)
     except ValueError as error:

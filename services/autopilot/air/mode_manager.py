@@ -165,7 +165,10 @@ class ModeManager(ActiveMode):
         """What the table says follows."""
         becomes = phase.becomes if isinstance(phase, MissionMode) else None
         self.disarms = self.disarms or phase.disarms
-        self._change(becomes or TABLE[self.mode].done or FlightMode.HOLD, phase.ended)
+        then, reason = becomes or TABLE[self.mode].done or FlightMode.HOLD, phase.ended
+        if then is FlightMode.LAND and not self.has_wheels:
+            then, reason = FlightMode.HOLD, Need.WHEELS.value
+        self._change(then, reason)
 
     def return_point(self, now: Estimate, params: AirParams) -> Place | None:
         """Where Return would lead now."""

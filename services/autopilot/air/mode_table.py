@@ -35,6 +35,8 @@ class Situation:
     """Who has stopped the aircraft."""
     led: bool = False
     """The aircraft has a leader, which is heard."""
+    wheels: bool = True
+    """It takes off and lands by itself."""
 
 
 class Need(Enum):
@@ -46,6 +48,7 @@ class Need(Enum):
     GROUND = "the aircraft is flying: it can only take off from the ground"
     MISSION = "there is no mission: upload one first"
     SETPOINT = "no program sends setpoints: they have to come before this mode, as client, offboard or mavlink"
+    WHEELS = "an airship neither takes off nor lands by itself"
     LEADER = "there is no leader to follow, or nothing is heard of it: see 'follow' of the mission's job"
 
     def is_met(self, now: Situation) -> bool:
@@ -58,6 +61,7 @@ class Need(Enum):
             Need.MISSION: now.has_mission,
             Need.SETPOINT: now.setpoint,
             Need.LEADER: now.led,
+            Need.WHEELS: now.wheels,
         }[self]
 
 
@@ -86,12 +90,12 @@ TABLE: Mapping[FlightMode, ModeRule] = {
     _M.STABILIZED: ModeRule((Need.RELEASED,), is_manual=True, on_ground=True),
     _M.ALTITUDE: ModeRule((Need.RELEASED, Need.AIRBORNE), is_manual=True),
     _M.POSITION: ModeRule(_FLYING, _HERE, without=_M.ALTITUDE, is_manual=True),
-    _M.TAKEOFF: ModeRule((Need.RELEASED, Need.GROUND, Need.POSITION), done=_M.HOLD, on_ground=True),
+    _M.TAKEOFF: ModeRule((Need.RELEASED, Need.WHEELS, Need.GROUND, Need.POSITION), done=_M.HOLD, on_ground=True),
     _M.MISSION: ModeRule((Need.RELEASED, Need.POSITION, Need.MISSION), _HERE, done=_M.HOLD, on_ground=True),
     _M.HOLD: ModeRule(),
     _M.ORBIT: ModeRule(_FLYING, _HERE),
     _M.RETURN: ModeRule(_FLYING, _HERE, done=_M.LAND),
-    _M.LAND: ModeRule(_FLYING, _HERE, done=_M.HOLD),
+    _M.LAND: ModeRule((*_FLYING, Need.WHEELS), _HERE, done=_M.HOLD),
     _M.OFFBOARD: ModeRule((Need.RELEASED, Need.AIRBORNE, Need.SETPOINT), (Need.SETPOINT,)),
     _M.FOLLOW: ModeRule((*_FLYING, Need.LEADER), (Need.POSITION, Need.LEADER)),
 }

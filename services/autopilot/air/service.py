@@ -69,6 +69,7 @@ class AutopilotAir(Service):
         self._told_params = ToldParams()
         self._armed = config.starts_in_air or config.starts_armed
         self._mode_manager = ModeManager(plan_items(config.items), config.ground, config.strips, config.servos)
+        self._mode_manager.has_wheels = params.law != "airship"
         self._mode_manager.leads = LeaderSpeedFilter() if config.leads else None
         self._over_ground = GroundProximity(config.altimeter)
         self._within = CachedFenceCheck()

@@ -26,6 +26,8 @@ def fault(items: Sequence[PlanItem], params: AirParams) -> str:
 
 
 def _fault(item: PlanItem, count: int, speed: float, params: AirParams) -> str:
+    if params.law == "airship" and item.kind in (ItemKind.TAKEOFF, ItemKind.LAND):
+        return f"is a {item.kind.name.lower()}: an airship does neither by itself; let it begin in the air, and leave this out"
     if item.kind is ItemKind.JUMP and item.jump_to >= count:
         return f"jumps to {item.jump_to}, but there are {count} items"
     if item.kind is ItemKind.SPEED and item.speed != 0 and not params.min_airspeed <= item.speed <= params.max_airspeed:

@@ -15,7 +15,7 @@ from uvf.models.mission.extending import merge
 from uvf.models.mission.faults import check_parts
 from uvf.models.mission.file import MissionFile, Vehicle, load_mission
 from uvf.models.mission.fixtures import furnished
-from uvf.models.mission.task_check import check_drivers, check_finders, check_shares
+from uvf.models.mission.task_check import check_batteries, check_drivers, check_finders, check_shares
 from uvf.models.params import Params
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.world.file import WorldFile, load_world
@@ -84,6 +84,10 @@ def check_starts(site: Scenario) -> None:
         if body is not None and not (x_min <= start.x <= x_max and y_min <= start.y <= y_max):
             floor = f"x {x_min:g}..{x_max:g}, y {y_min:g}..{y_max:g}"
             raise BadInput(f"{place.at(name, 'start')}: ({start.x:g}, {start.y:g}) is not on the floor of {site.mission.world}: {floor}")
+        if start.charge < 1.0 and not member.file.has_battery:
+            raise BadInput(
+                f"{place.at(name, 'start', 'charge')}: {member.entry.model} has no battery; give its vehicle.yaml one, or leave it out"
+            )
         if start.z < 0:
             raise BadInput(f"{place.at(name, 'start', 'z')}: {start.z:g} m is under the ground; the ground is 0")
     for (one, a), (other, b) in itertools.combinations(site.members.items(), 2):
@@ -121,6 +125,7 @@ def load_scenario(mission: str | Path, root: str | Path = ROOT) -> Scenario:
     kinds = {name: file.kind for name, file in files.items()}
     check_parts(data.faults, kinds, place.at("faults"))
     check_drivers(data.tasks, data.roles, kinds, place)
+    check_batteries(data.tasks, data.roles, {name for name, file in files.items() if not file.has_battery}, place)
     check_shares(data.tasks, data.roles, kinds, place)
     check_finders(data.tasks, data.roles, {name for name, member in members.items() if DETECTOR in member.file.params}, place)
     return site

@@ -2,6 +2,7 @@
 
 import pytest
 
+from launch.worlds.check import hidden_markers
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 
@@ -24,6 +25,13 @@ def test_they_stand_among_the_things_of_the_world(tmp_path):
     first, second = site.world.cylinders[-2:]
     assert (first.name, first.base, first.height) == ("marker_1", (1.0, 2.0, 0.0), 1.0)
     assert (second.name, second.radius, second.colour) == ("marker_2", 0.2, (0.0, 0.0, 1.0))
+
+
+def test_one_that_nobody_can_see_or_come_to_is_named(tmp_path):
+    site = loaded(tmp_path, "depot", "[{x: 1.0, y: 2.0}, {x: -28.0, y: -12.0}, {x: 8.6, y: -8.0}]")
+    inside, beside = hidden_markers(site)
+    assert "markers[1]: (-28, -12) is 0.00 m from a wall or furniture" in inside
+    assert "markers[2]: (8.6, -8) is 0.15 m from" in beside
 
 
 def test_they_stand_on_hills(tmp_path):

@@ -20,8 +20,11 @@ def root(tmp_path):
     return tmp_path
 
 
-def refusal(root, start=(6.0, 4.4, 0.0)):
+def refusal(root, start=(6.0, 4.4, 0.0), more="", **start_more):
     mission = site_with(root, {"burger": start}).mission_path
+    data = yaml.safe_load(mission.read_text()) | (yaml.safe_load(more) or {})
+    data["vehicles"]["burger"]["start"] |= start_more
+    mission.write_text(yaml.safe_dump(data))
     with pytest.raises(BadInput) as caught:
         build(load_scenario(mission, root))
     assert "\n" not in str(caught.value)
@@ -98,6 +101,20 @@ def test_a_sensor_rate_that_does_not_fit_the_step(root):
 
 def test_a_start_inside_the_furniture(root):
     assert "burger: start (0.6, 2.2) is 0.00 m from a wall or furniture" in refusal(root, (0.6, 2.2, 0.0))
+
+
+def test_a_charger_under_the_furniture(root):
+    assert "chargers[1]: (0.6, 2.2) lies under a wall or furniture" in refusal(root, more="chargers: [{x: 6.0, y: 4.4}, {x: 0.6, y: 2.2}]")
+
+
+def test_who_has_no_battery_has_no_charge(root):
+    edit_vehicle(root, lambda data: data["ground"].pop("battery"))
+    assert "burger: start: charge: burger has no battery; give its vehicle.yaml one, or leave it out" in refusal(root, charge=0.5)
+    waits = "tasks: [{TASK}]\nchargers: [{x: 6.0, y: 4.4}]"
+    assert "charge: vehicle: burger has no battery" in refusal(root, more=waits.replace("TASK", "charge: {vehicle: burger}"))
+    assert "when: charge_below: burger has no battery" in refusal(
+        root, more=waits.replace("TASK", "when: {vehicle: burger, charge_below: 0.5}, arm: burger")
+    )
 
 
 def test_without_ground_vehicles_there_is_no_service(root):

@@ -14,6 +14,8 @@ from uvf.models.yaml_data import BadInput, FileLocation
 
 Metres = Annotated[float, Meta(ge=-1e6, le=1e6)]
 
+MARKER = "marker_"
+"""Begins the names of markers in the world; their numbers follow, from 1."""
 CHARGER_COLOUR = (0.1, 0.65, 0.45)
 
 
@@ -49,7 +51,7 @@ def furnished(world: WorldFile, markers: Sequence[MarkerFile], chargers: Sequenc
     for i, marker in enumerate(markers):
         ground = 0.0 if land is None else float(land.at(np.array(marker.x), np.array(marker.y))[0])
         base = (marker.x, marker.y, ground)
-        posts.append(Cylinder(name=f"marker_{i + 1}", base=base, radius=marker.radius, height=marker.height, colour=marker.colour))
+        posts.append(Cylinder(name=f"{MARKER}{i + 1}", base=base, radius=marker.radius, height=marker.height, colour=marker.colour))
     pads = [Field(area=(c.x - c.radius, c.y - c.radius, c.x + c.radius, c.y + c.radius), colour=CHARGER_COLOUR) for c in chargers]
     return msgspec.structs.replace(world, cylinders=[*world.cylinders, *posts], fields=[*pads, *world.fields])
 

@@ -125,6 +125,19 @@ def check_charging(tasks: list[Task], chargers: int, file: FileLocation) -> None
             raise BadInput(f"{place.at('charge')}: the mission has no chargers; set some up under 'chargers'")
 
 
+def check_batteries(tasks: list[Task], roles: Roles, without: Collection[str], file: FileLocation) -> None:
+    """Checks that who is to be charged, or whose charge is waited for, has a battery; without: vehicles that have none. Raises BadInput."""
+    for task, place in _placed(tasks, file.at("tasks")):
+        asked = [] if task.charge is None else [(task.charge.vehicle, place.at("charge", "vehicle"))]
+        for name, condition in (("when", task.when), ("until", task.until)):
+            if condition is not None and condition.charge_below is not None and condition.vehicle is not None:
+                asked.append((condition.vehicle, place.at(name, "charge_below")))
+        for who, where in asked:
+            for vehicle in members_of(who, roles):
+                if vehicle in without:
+                    raise BadInput(f"{where}: {vehicle} has no battery; give its vehicle.yaml one")
+
+
 def check_finders(tasks: list[Task], roles: Roles, seeing: Collection[str], file: FileLocation) -> None:
     """Checks that who is to find markers looks for them; seeing: vehicles with a detector. Raises BadInput."""
     for task, place in _placed(tasks, file.at("tasks")):

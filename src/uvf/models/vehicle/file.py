@@ -67,6 +67,12 @@ class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ] = {}
     variant_of: Annotated[Name | None, plain("Another vehicle whose file holds what this one leaves out.")] = None
 
+    @property
+    def has_battery(self) -> bool:
+        """Whether there is anything to charge."""
+        body = self.ground or self.air
+        return body is not None and body.battery is not None
+
 
 def load_vehicle(vehicles: str | Path, name: str, named_at: FileLocation | None = None) -> VehicleFile:
     """Reads ``<vehicles>/<name>/vehicle.yaml`` in the folder of all vehicles; ``named_at``: what names it. Raises BadInput."""

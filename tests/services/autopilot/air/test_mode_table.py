@@ -15,8 +15,8 @@ from uvf.models.scenario import ROOT
 
 M = FlightMode
 SITUATIONS = [
-    Situation(airborne, known, mission, setpoint, stopped, led)
-    for airborne, known, mission, setpoint, led in itertools.product((False, True), repeat=5)
+    Situation(airborne, known, mission, setpoint, stopped, led, wheels)
+    for airborne, known, mission, setpoint, led, wheels in itertools.product((False, True), repeat=6)
     for stopped in ("", "gcs")
 ]
 MET = {
@@ -27,6 +27,7 @@ MET = {
     Need.MISSION: lambda s: s.has_mission,
     Need.SETPOINT: lambda s: s.setpoint,
     Need.LEADER: lambda s: s.led,
+    Need.WHEELS: lambda s: s.wheels,
 }
 FAR = [PlanItem(ItemKind.WAYPOINT, Place(900.0, 0.0, 70.0)), PlanItem(ItemKind.WAYPOINT, Place(900.0, 900.0, 70.0))]
 
@@ -64,6 +65,28 @@ def test_on_the_ground_a_mode_of_the_air_is_refused_and_nothing_changes(mode):
     mode_manager = flying([], airborne=False, **STANDING)
     assert "on the ground" in mode_manager.change_mode(mode, "test")
     assert mode_manager.mode is M.HOLD
+
+
+def airship():
+    mode_manager = flying()
+    mode_manager.has_wheels = False
+    return mode_manager
+
+
+@pytest.mark.parametrize("mode", [M.TAKEOFF, M.LAND])
+def test_an_airship_neither_takes_off_nor_lands(mode):
+    mode_manager = airship()
+    assert "an airship" in mode_manager.change_mode(mode, "test")
+    assert mode_manager.mode is M.MISSION
+
+
+def test_an_airship_that_has_returned_circles_on():
+    mode_manager = airship()
+    assert mode_manager.change_mode(M.RETURN, "test") == ""
+    mode_manager.step(cruising(), PARAMS, 0.02)
+    mode_manager._phase.ended = "return: lands"
+    mode_manager.step(cruising(), PARAMS, 0.02)
+    assert (mode_manager.mode, mode_manager.reason) == (M.HOLD, Need.WHEELS.value)
 
 
 def test_in_the_air_a_take_off_is_refused():
