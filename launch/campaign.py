@@ -35,6 +35,15 @@ class SeedRun:
         """Whether every criterion holds and no instance has failed."""
         return not self.failures and all(v.passed for v in self.verdicts)
 
+    @property
+    def complaints(self) -> Iterator[str]:
+        """Why it has not passed, a line each."""
+        for verdict in self.verdicts:
+            if not verdict.passed:
+                what = f"{verdict.subject} {verdict.criterion.measure} {verdict.found.value:.3g}"
+                yield f"seed {self.seed}: {what}; {verdict.found.circumstances or 'at the end'}; log {self.log}"
+        yield from (f"seed {self.seed}: {failure}; log {self.log}" for failure in self.failures)
+
 
 def run_seeds(mission: Path, count: int, until: float | None, folder: Path) -> Iterator[SeedRun]:
     """Runs a mission ``count`` times, with its seed and those after it, on all processors; yields the runs as they end. Raises BadInput.

@@ -118,12 +118,8 @@ def _print_campaign(runs: list[SeedRun]) -> None:
         table.add_row(escaped(first.subject), first.criterion.measure, first.limits, *spread, f"{passed} of {len(runs)}")
     console.print(table)
     for run in runs:
-        for verdict in run.verdicts:
-            if not verdict.passed:
-                what = f"{verdict.subject} {verdict.criterion.measure} {verdict.found.value:.3g}"
-                typer.echo(escaped(f"seed {run.seed}: {what}; {verdict.found.circumstances or 'at the end'}; log {run.log}"))
-        for failure in run.failures:
-            typer.echo(escaped(f"seed {run.seed}: {failure}; log {run.log}"))
+        for line in run.complaints:
+            typer.echo(escaped(line))
     passed = sum(run.passed for run in runs)
     low, high = success_interval(passed, len(runs))
     factor = sum(run.simulated for run in runs) / sum(run.wall for run in runs)
