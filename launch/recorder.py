@@ -26,6 +26,7 @@ ROTATE_BYTES = 500_000_000
 ROOM = 100_000_000  # bytes free on the disk, from which recording is taken up again
 NICE = 10
 LOOK = 0.05  # s
+CLOCK = topics.CLOCK.at(topics.SYSTEM)
 LAST = 5.0  # s, for what has arrived until the end; who floods the bus does not keep the log open
 
 Tell = Callable[[str, Event.Severity], None]
@@ -68,13 +69,14 @@ class LogSeries:
         self._free = free
         self._told = False
         self._told_refused: set[str] = set()
+        self._epoch = self._restarts = 0
         self._number = next_number(folder)
         self._recorder = self._begin(None)
 
     def _begin(self, before: Recorder | None) -> Recorder:
         """The next file, with its head on the disk; if the disk refuses that, ``error`` says so and nothing is left behind."""
         path = self._folder / f"log-{self._number:03}.mcap"
-        begun = Recorder(path, self._attachments, before, versions())
+        begun = Recorder(path, self._attachments, before, versions(), self._restarts)
         begun.flush()
         if begun.error:
             begun.close()
@@ -84,12 +86,21 @@ class LogSeries:
         return begun
 
     def write(self, sample: Sample) -> None:
-        """Records a sample and rotates the file when it is full."""
+        """Records a sample and rotates the file when it is full, and when time starts over."""
+        if sample.key == CLOCK and sample.epoch > self._epoch:
+            if self._epoch > 0:
+                self._restarts += 1
+                self._recorder.start_over(sample)
+                self._rotate()
+            self._epoch = sample.epoch
         self._recorder.write(sample)
         if not self._recorder.error and self._recorder.size >= self._rotate_bytes:
-            self._recorder.close()
-            if not self._recorder.error:
-                self._begin_next()
+            self._rotate()
+
+    def _rotate(self) -> None:
+        self._recorder.close()
+        if not self._recorder.error:
+            self._begin_next()
 
     def _begin_next(self) -> None:
         """Called while no file is being written."""

@@ -13,8 +13,10 @@ from schemas import topics
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import LocalBus, Sample
-from uvf.runtime.log.reading import log_attachments, log_metadata, read_log
+from uvf.runtime.log.folder import logs_of
+from uvf.runtime.log.reading import log_attachments, log_metadata, read_log, restarts_of
 from uvf.runtime.log.recovery import recover
+from uvf.runtime.log.run_samples import run_samples
 
 POSE, MAP, STATUS = (topic.at("v") for topic in (topics.POSE, topics.MAP, topics.STATUS))
 NOISE = random.Random(1).randbytes(200_000)  # does not compress
@@ -239,3 +241,39 @@ def test_mission_world_and_vehicles_are_attached_by_their_places():
     attached = attachments(load_scenario(ROOT / "missions" / "demo.yaml"))
     for name in ("missions/demo.yaml", "worlds/house/world.yaml", "vehicles/burger/burger.urdf", "vehicles/milvus/engine/milvus_motor.xml"):
         assert attached[name] == (ROOT / name).read_bytes()
+
+
+def tick(series, epoch, t):
+    """The clock's word, and a pose and a map of that epoch."""
+    for key, topic, payload in ((topics.CLOCK.at("sys"), topics.CLOCK, b""), (POSE, topics.POSE, b"pose"), (MAP, topics.MAP, b"map")):
+        name = topic.message.DESCRIPTOR.full_name
+        series.write(Sample(key, name, payload + b" %d" % epoch if payload else b"", round(t * 1e9), round(t * 10) + 1, epoch, epoch))
+
+
+def test_where_time_starts_over_another_log_begins_and_the_run_is_what_came_since(tmp_path, tell):
+    series = LogSeries(tmp_path, {}, tell)
+    for epoch in (1, 2):
+        for n in range(30 * epoch):
+            tick(series, epoch, n / 10)
+        series.flush()
+    assert [log.name for log in logs_of(tmp_path)] == ["log-001.mcap"]  # while it is being recorded, too
+    series.close()
+    assert [log.name for log in logs(tmp_path)] == ["log-000.mcap", "log-001.mcap"]
+    payloads = {name: {s.payload for s in read_log(tmp_path / name) if s.key == POSE} for name in ("log-000.mcap", "log-001.mcap")}
+    assert payloads == {"log-000.mcap": {b"pose 1"}, "log-001.mcap": {b"pose 2"}}
+    assert {s.payload for s in run_samples(tmp_path) if s.key == MAP} == {b"map 2"}
+    assert max(s.stamp_ns for s in run_samples(tmp_path)) == round(5.9e9)
+
+
+def test_a_log_that_grows_too_large_is_no_new_beginning(tmp_path, tell):
+    series = LogSeries(tmp_path, {}, tell, rotate_bytes=30_000)
+    drive(follow(series), series)
+    series.close()
+    assert logs_of(tmp_path) == logs(tmp_path) and len(logs(tmp_path)) > 1
+
+
+@pytest.mark.parametrize("data", [b"", b"nonsense", b"\x89MCAP0\r\n" + b"\x0c\xff\xff"])
+def test_a_file_that_is_no_log_began_at_the_beginning(tmp_path, data):
+    path = tmp_path / "log-000.mcap"
+    path.write_bytes(data)
+    assert restarts_of(path) == 0

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.log.reading import restarts_of
 
 LOG_FOLDER = "UVF_LOG_FOLDER"
 
@@ -21,10 +22,14 @@ def run_folder(run: Path) -> Path:
 
 
 def logs_of(run: Path) -> list[Path]:
-    """The files of a run's folder in their order, or the one log that is named. Raises BadInput."""
+    """The files of a run's folder in their order, or the one log that is named. Raises BadInput.
+
+    Where the simulation was reset, those since then: what was before is found by the names of its files.
+    """
     if not run.is_dir():
         return [run]
     found = sorted(run.glob("log-*.mcap"), key=lambda p: (len(p.name), p.name))
     if not found:
         raise BadInput(f"{run}: no log-*.mcap in this folder: name the folder of a run or a log")
-    return found
+    restarts = [restarts_of(log) for log in found]
+    return [log for log, count in zip(found, restarts, strict=True) if count == restarts[-1]]

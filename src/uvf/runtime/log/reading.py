@@ -5,6 +5,7 @@ import errno
 import heapq
 import struct
 from collections.abc import Container, Iterable, Iterator, Mapping
+from itertools import islice
 from pathlib import Path
 from typing import IO
 
@@ -12,8 +13,8 @@ from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
-from mcap.records import Channel, Chunk, Message, Schema
-from mcap.stream_reader import breakup_chunk
+from mcap.records import Channel, Chunk, Message, Metadata, Schema
+from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import MCAP0_MAGIC
 from zstandard import ZstdError
 
@@ -24,6 +25,9 @@ from uvf.runtime.messages.step_times import NS
 
 BROKEN = (McapError, ZstdError, EOFError, ValueError, KeyError, struct.error, OverflowError, MemoryError)
 """What the readers raise for bytes that are no log, the last two for lengths that are nonsense."""
+BEGINNING, RESTARTS = "uvf.begin", "restarts"
+"""Note at the head of a log, and what it tells: how often time had started over in its run."""
+HEADING = 4  # records, among which it is
 HELD = 16_000_000  # bytes of chunks, while a log is read in order of time
 HEAD = struct.Struct("<BQ")  # kind and length of a record
 
@@ -159,6 +163,15 @@ def log_metadata(path: Path) -> dict[str, str]:
     """Notes of the recorder at the end of a log: message count, completeness, hash, gaps. Raises BadInput."""
     with opened_log(path) as file:
         return next((dict(m.metadata) for m in make_reader(file).iter_metadata() if m.name == "uvf"), {})
+
+
+def restarts_of(path: Path) -> int:
+    """How often time had started over in its run when this log began; 0 for a file that does not say, or is none."""
+    with contextlib.suppress(OSError, *BROKEN), path.open("rb") as file:
+        for record in islice(StreamReader(file, emit_chunks=True).records, HEADING):
+            if isinstance(record, Metadata) and record.name == BEGINNING and (told := record.metadata.get(RESTARTS, "")).isdecimal():
+                return int(told[:9])
+    return 0
 
 
 def log_attachments(path: Path) -> dict[str, bytes]:

@@ -20,6 +20,7 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.envelope import WRAP, GapCounter
 from uvf.runtime.bus.interface import Bus, Sample
 from uvf.runtime.log.bounds import Admission, Standing
+from uvf.runtime.log.reading import BEGINNING, RESTARTS
 from uvf.runtime.messages.topic_lookup import MESSAGES, topic_of
 
 CHUNK = 1_000_000  # bytes
@@ -55,6 +56,7 @@ class Recorder:
     of each topic that stands until the next one (latched and kept topics), so that it can be read and replayed alone.
 
     Sequence numbers have 32 bits in a log: after 4294967295 comes 0. What no log can hold is refused and counted.
+    restarts: how often time has started over in the run.
     """
 
     def __init__(
@@ -63,6 +65,7 @@ class Recorder:
         attachments: Mapping[str, bytes] | None = None,
         before: "Recorder | None" = None,
         made_with: Mapping[str, str] | None = None,
+        restarts: int = 0,
     ) -> None:
         """attachments: contents by name; made_with: versions by name.
 
@@ -84,6 +87,7 @@ class Recorder:
         self._unsaved: Counter[str] = Counter()
         with self._disk():
             self._writer.start(profile="", library="uvf")
+            self._writer.add_metadata(BEGINNING, {RESTARTS: str(restarts)})
             for name, data in (attachments or {}).items():
                 self._writer.add_attachment(0, 0, name, "application/octet-stream", data)
         for sample in self._standing.in_force():
@@ -119,6 +123,10 @@ class Recorder:
             self.refused["head"] += 1
         self._unsaved[sample.key] += not self.error
         self._put(sample)
+
+    def start_over(self, clock: Sample) -> None:
+        """Time starts over with this message: what was said before does not stand in the file that follows."""
+        self._standing.remember(clock)
 
     def _put(self, sample: Sample) -> None:
         if self.error:
