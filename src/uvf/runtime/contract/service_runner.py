@@ -2,23 +2,22 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 from google.protobuf.message import Message
 
 from schemas import topics
 from schemas.messages import Event, VehicleStatus
-from schemas.topics import PARAM, SYSTEM, Qos, Request, Topic
-from uvf.runtime.bus.interface import Bus, Publisher, Query, Sample
+from schemas.topics import PARAM, SYSTEM, Qos
+from uvf.runtime.bus.interface import Bus, Query, Sample
 from uvf.runtime.bus.wire import Malformed, decode
 from uvf.runtime.contract.bulkhead import FAILURES, WINDOW, Bulkhead
 from uvf.runtime.contract.declaration import Called, Frames, Input, StopInput, Writes, declared_in
 from uvf.runtime.contract.inbox import AHEAD_MOST, EVERY_DEPTH, InputBox
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.link_cuts import LinkCuts
-from uvf.runtime.contract.open_calls import OpenCalls
+from uvf.runtime.contract.outbox import Outbox
 from uvf.runtime.contract.param_server import ParamServer
 from uvf.runtime.contract.request_desk import QUERIES_MOST, ContractError, RequestDesk
 from uvf.runtime.contract.service import Service
@@ -27,7 +26,6 @@ from uvf.runtime.messages.frames import FrameBuffer
 from uvf.runtime.messages.outputs import OutputMessages
 from uvf.runtime.messages.refusals import Refusals
 from uvf.runtime.messages.step_times import NS, first_step_after, step_time
-from uvf.runtime.messages.validation import error_in
 from uvf.runtime.process.watchdog import Watchdog, time_limit
 from uvf.runtime.state.stop_all import StopBook, StopStatus
 
@@ -41,12 +39,13 @@ AFRESH = "time has started over: ask again"
 class Counters:
     """Counters of one instance's steps and messages."""
 
+    published: dict[str, int]
+    """The number of the newest message on each key."""
     steps: int = 0
     stale: int = 0
     skipped: int = 0
     failures: int = 0
     missing: tuple[str, ...] = ()
-    published: dict[str, int] = field(default_factory=dict)
 
 
 class ServiceRunner:
@@ -59,7 +58,6 @@ class ServiceRunner:
         self.host = host
         self.type = host.service
         self.owner = host.vehicle or SYSTEM
-        self.counters = Counters()
         self.epoch = 0
         self.sim_ns = 0
         """Simulation time now, kept by the loop: the stamp of what wall-clock services send."""
@@ -69,15 +67,14 @@ class ServiceRunner:
         self._limited: Callable[[], AbstractContextManager[None]] = nullcontext
         if watchdog is not None and self._bulkhead is not None:
             self._limited = partial(watchdog.limited, time_limit(self.type.hz))
-        self._publishers: dict[str, Publisher] = {}
-        self._left: dict[str, bytes] = {}
-        """The newest bytes that it has put on each key that it recalls."""
-        self._desk = RequestDesk(self.type, self._put, self._refused)
-        self._calls = OpenCalls(self.type.calls, bus)
+        self._links = LinkCuts(self.owner, host.faults, self.type.simulator)
+        self._outbox = Outbox(self.type, self.owner, bus, self._links)
+        self._calls = self._outbox.calls
+        self.counters = Counters(self._outbox.published)
+        self._desk = RequestDesk(self.type, self._outbox.put, self._refused)
         self._answered = [name for name, how in declared_in(self.type.Inputs).items() if isinstance(how, Called)]
         self.refusals = Refusals(lambda line: warn(f"{self.type.name}: {line}"))
         self._stops = StopBook(at_once=self.type.clock == "wall")
-        self._links = LinkCuts(self.owner, host.faults, self.type.simulator)
         self.service: Service
         self._boxes: dict[str, InputBox] = {}
         self._frames: dict[str, FrameBuffer] = {}
@@ -99,7 +96,7 @@ class ServiceRunner:
         self._refuse_all(AFRESH)
         if self._bulkhead is not None:
             self._bulkhead = Bulkhead()
-        self._left.clear()
+        self._outbox.left.clear()
         unmade = self._contain(self._make)
         self._listen()
         for name, sample in kept:
@@ -255,7 +252,7 @@ class ServiceRunner:
         if params is not None:
             self._param_server.take_up(params)
         with self._limited():
-            self.recall({**heard, **self._left}.get)
+            self.recall({**heard, **self._outbox.left}.get)
 
     def _tell_failure(self, t_ns: int, cause: str, given_up: str = "") -> None:
         """given_up: why, where it is."""
@@ -265,7 +262,7 @@ class ServiceRunner:
         self._warn(f"{text}: {cause}")
         severity = Event.CRITICAL if given_up else Event.ERROR
         event = Event(timestamp=stamp_ns(self._now(t_ns)), severity=severity, text=text, cause=cause, source=self.type.name)
-        self._publish_one(topics.EVENTS.by(self.type.name), self.owner, event, self._now(t_ns))
+        self._outbox.publish_one(topics.EVENTS.by(self.type.name), event, self._now(t_ns))
 
     def _stand_in(self, t_ns: int) -> None:
         """In place of an instance that was given up: what is safe, until time starts over or the process is started again."""
@@ -352,45 +349,8 @@ class ServiceRunner:
         return stamp_ns < t_ns or self.type.clock == "wall"
 
     def _publish(self, outputs: OutputMessages, t_ns: int) -> None:
-        stamp = self._now(t_ns) + round(self.type.latency * NS)
-        for name, value in outputs.items():
-            if name in self.type.requests:
-                continue
-            topic = self.type.outputs.get(name) or self.type.calls.get(name)
-            if topic is None:
-                raise ContractError(f"{self.type.name}: step returned '{name}', which is not declared")
-            by_owner = value if isinstance(value, dict) else {self.owner: value}
-            for owner, messages in by_owner.items():
-                for message in messages if isinstance(messages, (list, tuple)) else (messages,):
-                    self._send(name, topic, owner, message, stamp)
+        self._outbox.publish(outputs, self._now(t_ns) + round(self.type.latency * NS))
 
     def _now(self, t_ns: int) -> int:
         """The stamp of what a step at ``t_ns`` says."""
         return t_ns if self.type.clock == "sim" else self.sim_ns
-
-    def _publish_one(self, topic: Topic[Any], owner: str, message: Message, stamp: int) -> None:
-        self._put(topic.at(owner), topic.message, topic.qos, message.SerializeToString(deterministic=True), stamp)
-
-    def _send(self, name: str, topic: Topic[Any] | Request[Any, Any], owner: str, message: Message, stamp: int) -> None:
-        if not isinstance(message, topic.message):
-            raise ContractError(f"{self.type.name}: '{name}' is {type(message).__name__}, declared {topic.message.__name__}")
-        key = topic.at(owner)
-        is_cut = self._links.cut(owner, stamp)
-        if isinstance(topic, Request):
-            if is_cut:
-                self._calls.fail(name, owner, message, stamp, f"no answer: the link to {owner} is cut")
-            else:
-                self._calls.send(name, topic, owner, message, stamp)
-        if is_cut or isinstance(topic, Request):
-            return
-        payload = message.SerializeToString(deterministic=True)
-        if "/actuator/" in key and (why := error_in(message)):
-            raise ContractError(f"{key}: {why}")  # the simulator would refuse it: better the instance fails and is started afresh
-        if topic.kept:
-            self._left[key] = payload
-        self._put(key, topic.message, topic.qos, payload, stamp)
-
-    def _put(self, key: str, message: type[Message], qos: Qos, payload: bytes, stamp: int) -> None:
-        if key not in self._publishers:
-            self._publishers[key] = self._bus.publisher(key, message.DESCRIPTOR.full_name, qos)
-        self.counters.published[key] = self._publishers[key].put(payload, stamp)
