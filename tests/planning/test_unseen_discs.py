@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from uvf.planning.costmap.unseen_discs import SPACING, unseen_points
+from uvf.planning.costmap.unseen_discs import NEAREST, SPACING, unseen_points
 
 NOTHING = np.zeros((0, 2))
 HERE = (1.0, -2.0)
@@ -29,6 +29,13 @@ def test_what_is_seen_or_far_or_here_is_left_out():
     assert len(unseen_points(at((9.0, 1.0, 0.2)), NOTHING, HERE, 5.0)) == 0
     assert len(unseen_points(at((1.1, -2.0, 0.2)), NOTHING, HERE, 5.0)) == 0
     assert len(unseen_points(at((1.3, -2.0, 0.2)), NOTHING, HERE, 5.0)) > 0
+
+
+def test_of_a_crowd_the_nearest_count():
+    crowd = np.column_stack((np.linspace(1.5, 4.0, 100), np.full(100, -2.0), np.full(100, 0.01)))
+    points = unseen_points(crowd[::-1], NOTHING, HERE, 5.0)
+    assert len(points) == NEAREST
+    assert points[:, 0].max() < 2.0
 
 
 def test_nobody_covers_nothing():

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 BLURRED = 0.15  # m between where one says it is and where another one sees it
+NEAREST = 16  # vehicles about one
 SPACING = 0.05  # m between the points that stand for a disc
 
 
@@ -13,11 +14,13 @@ def unseen_points(discs: Floats, seen: Floats, here: tuple[float, float], reach:
     """(m, 2) m points that cover the discs (k, 3), x, y and radius [m], within ``reach`` [m] of a vehicle at ``here`` [m].
 
     Without those that the points (n, 2) [m] which its lidar sees show: they are known better, and may move. And without one that
-    ``here`` lies in: two vehicles cannot be there, so one of them is wrong about its place, and must not hold the other.
+    ``here`` lies in: two vehicles cannot be there, so one of them is wrong about its place, and must not hold the other. Of more than
+    ``NEAREST`` the others are left out.
     """
-    away = np.hypot(*(discs[:, :2] - here).T)
+    gap = np.hypot(*(discs[:, :2] - here).T) - discs[:, 2]
+    near = np.flatnonzero((gap > 0.0) & (gap <= reach))
     found = [np.zeros((0, 2))]
-    for x, y, radius in discs[(away > discs[:, 2]) & (away <= reach + discs[:, 2])].tolist():
+    for x, y, radius in discs[near[np.argsort(gap[near], kind="stable")][:NEAREST]].tolist():
         if not (np.hypot(seen[:, 0] - x, seen[:, 1] - y) <= radius + BLURRED).any():
             found.append(_filled(radius) + np.array((x, y)))
     return np.concatenate(found)
