@@ -23,6 +23,7 @@ from uvf.runtime.log.versions import versions
 
 FLUSH_PERIOD = 1.0  # s
 ROTATE_BYTES = 500_000_000
+RESTARTS_EVERY = 1.0  # s, at most: who floods the bus with clocks does not flood the disk with files
 ROOM = 100_000_000  # bytes free on the disk, from which recording is taken up again
 NICE = 10
 LOOK = 0.05  # s
@@ -70,6 +71,7 @@ class LogSeries:
         self._told = False
         self._told_refused: set[str] = set()
         self._epoch = self._restarts = 0
+        self._restarted_at = -RESTARTS_EVERY
         self._number = next_number(folder)
         self._recorder = self._begin(None)
 
@@ -88,7 +90,8 @@ class LogSeries:
     def write(self, sample: Sample) -> None:
         """Records a sample and rotates the file when it is full, and when time starts over."""
         if sample.key == CLOCK and sample.epoch > self._epoch:
-            if self._epoch > 0:
+            if self._epoch > 0 and time.monotonic() - self._restarted_at >= RESTARTS_EVERY:
+                self._restarted_at = time.monotonic()
                 self._restarts += 1
                 self._recorder.start_over(sample)
                 self._rotate()

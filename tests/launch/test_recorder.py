@@ -265,6 +265,14 @@ def test_where_time_starts_over_another_log_begins_and_the_run_is_what_came_sinc
     assert max(s.stamp_ns for s in run_samples(tmp_path)) == round(5.9e9)
 
 
+def test_a_flood_of_clocks_makes_no_flood_of_files(tmp_path, tell):
+    series = LogSeries(tmp_path, {}, tell)
+    for epoch in range(1, 200):
+        tick(series, epoch, 0.0)
+    series.close()
+    assert len(logs(tmp_path)) <= 3
+
+
 def test_a_log_that_grows_too_large_is_no_new_beginning(tmp_path, tell):
     series = LogSeries(tmp_path, {}, tell, rotate_bytes=30_000)
     drive(follow(series), series)
