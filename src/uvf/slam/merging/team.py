@@ -20,6 +20,9 @@ Floats = NDArray[np.float64]
 
 AGREEMENT = 0.7
 """Least agreement of two sessions that are one building; those that are alike here and there come to 0.5."""
+LEAST_TIES = 8
+"""Places at which two sessions have to fit once they are joined, unless fewer closures have said so: of those looked at there are only
+so many where both have been in one room."""
 AT_ONCE = 8  # places that are searched for before it is seen whether these are enough
 
 
@@ -148,7 +151,7 @@ class Team:
         joint = settled(members, [*known, *crossings], starts)
         both_ways = [*product(one.names, other.names), *product(other.names, one.names)]
         found = {(a, b): ties(self.parts, joint.poses, a, b) for a, b in both_ways}
-        if agreement(found.values()) < AGREEMENT or len(_crossings(found)) < len(crossings):
+        if agreement(found.values()) < AGREEMENT or len(_crossings(found)) < min(len(crossings), LEAST_TIES):
             return None
         joint = settled(members, [*known, *_crossings(found)], joint.poses)
         return MapGroup(joint, {**one.common, **other.common, **found})
