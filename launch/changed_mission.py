@@ -10,6 +10,9 @@ from uvf.models.mission.extending import EXTENDS, merge
 from uvf.models.whole_file import write_whole
 from uvf.models.yaml_data import BadInput, parse_yaml
 
+NULL = ("null", "~")
+"""What takes a key out."""
+
 
 def changed_mission(base: Path, settings: list[str], folder: Path) -> Path:
     """Writes a mission like ``base`` with other values (``vehicles.rover.model=burger``) into ``folder``; its path. Raises BadInput."""
@@ -31,7 +34,7 @@ def _change(setting: str) -> dict[str, Any]:
     if not equals or not all(names):
         raise BadInput(f"--set {setting}: write it as vehicles.rover.model=burger")
     *outer, last = names
-    found: dict[str, Any] = {last: parse_yaml(text, f"--set {keys}") if text.strip() else ""}
+    found: dict[str, Any] = {last: None if text.strip() in NULL else parse_yaml(text, f"--set {keys}") if text.strip() else ""}
     for name in reversed(outer):
         found = {name: found}
     return found

@@ -90,6 +90,8 @@ def shown(text: str) -> str:
 def criteria_table(verdicts: Sequence[Verdict]) -> Table:
     """The criteria of a mission with what was measured."""
     table = Table("subject", "measure", "value", "limit", "", "decided by")
+    for column in table.columns[:2]:
+        column.overflow = "fold"  # names of measures are looked up, also on a narrow terminal
     for verdict in verdicts:
         row = (shown(verdict.subject), verdict.criterion.measure, f"{verdict.found.value:.3g}", verdict.limits)
         table.add_row(*row, "passed" if verdict.passed else "FAILED", shown(verdict.found.circumstances))

@@ -28,6 +28,8 @@ def finish(axes: Any, title: str, columns: int = 3) -> None:
     axes.set_title(title, fontsize=10, loc="left")
     axes.grid(alpha=0.3)
     axes.tick_params(labelsize=8)
+    if not axes.has_data():
+        axes.text(0.5, 0.5, "nothing of it in this run", transform=axes.transAxes, ha="center", va="center", color="#999999", fontsize=9)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(fontsize=8, ncols=columns, loc="upper right", framealpha=0.8)
         if axes.get_aspect() == "auto":

@@ -1,5 +1,7 @@
 """The picture of a whole run: every vehicle's way over the world and over the map that they share, and when each task ran."""
 
+import itertools
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +10,7 @@ import numpy as np
 from matplotlib import colormaps
 from numpy.typing import NDArray
 
-from launch.reports.axes import MOST_POINTS, finish
+from launch.reports.axes import MOST_POINTS, finish, line
 from launch.reports.drive_page import draw_map
 from launch.reports.history import History
 from launch.reports.recorded_run import RecordedRun
@@ -25,6 +27,7 @@ LARGE = 60.0  # m, side from which on the floor plan is drawn in larger cells
 MARGIN = 0.06
 """Of the ways' extent, left free around them."""
 TASK_COLOURS = {TaskStatus.DONE: "#8fd19e", TaskStatus.FAILED: "#e57373", TaskStatus.STOPPED: "#c9c9d2", TaskStatus.RUNNING: "#9ec9e8"}
+FEW = 4  # vehicles, of which the distances of all pairs are drawn
 INDENT = "    "
 
 
@@ -33,13 +36,16 @@ def draw_team(run: RecordedRun, team_map: GridMap | None, target: Path) -> None:
     shown = [task for task in run.tasks if task.name]
     flies = [history.is_aircraft for history in run.vehicles.values()]
     panels = [_over_world] + ([_over_floor] if any(flies) and not all(flies) else []) + ([_over_map] if team_map is not None else [])
-    heights = [6.5] + ([0.4 + 0.24 * len(shown)] if shown else [])
+    apart = distances(run)
+    heights = [6.5, *([2.4] if apart else []), *([0.4 + 0.24 * len(shown)] if shown else [])]
     sheet = matplotlib.figure.Figure(figsize=(15.0, sum(heights)), layout="constrained")
     parts = sheet.add_gridspec(len(heights), len(panels), height_ratios=heights)
     for i, panel in enumerate(panels):
         panel(sheet.add_subplot(parts[0, i]), run, team_map)
+    if apart:
+        _apart(sheet.add_subplot(parts[1, :]), apart)
     if shown:
-        _tasks(sheet.add_subplot(parts[1, :]), run)
+        _tasks(sheet.add_subplot(parts[-1, :]), run)
     sheet.savefig(target, dpi=90)
 
 
@@ -121,6 +127,48 @@ def way_of(history: History) -> Floats:
     return np.zeros((0, 2))
 
 
+def distances(run: RecordedRun) -> dict[str, tuple[Floats, Floats]]:
+    """By name of the pair, (k,) s and (k,) m: how far two vehicles were from each other, while both were known.
+
+    Of all pairs of a few vehicles; of more, only of those that follow with whom they follow.
+    """
+    moved = {name: path for name, history in run.vehicles.items() if len(path := _moved(history)) > 1}
+    pairs = list(itertools.combinations(moved, 2))
+    if len(moved) > FEW:
+        pairs = [(leader, name) for name, leader in _leaders(run).items() if name in moved and leader in moved]
+    found = {}
+    for one, other in pairs:
+        a, b = moved[one], moved[other]
+        t = a[(a[:, 0] >= b[0, 0]) & (a[:, 0] <= b[-1, 0]), 0]
+        places = [np.column_stack([np.interp(t, path[:, 0], path[:, k]) for k in (1, 2, 3)]) for path in (a, b)]
+        if len(t):
+            found[f"{one} to {other}"] = t, np.linalg.norm(places[0] - places[1], axis=1)
+    return found
+
+
+def _moved(history: History) -> Floats:
+    """(k, 4) s and m, world: when it was where, truly, where the truth is known."""
+    for stream in ("truth/state", "nav/state"):
+        if len(rows := history.rows(stream)):
+            return rows[:, :4]
+    return np.zeros((0, 4))
+
+
+def _leaders(run: RecordedRun) -> dict[str, str]:
+    """Whom each of those follows that follow from the start on."""
+    members = run.site.members.items() if run.site is not None else ()
+    return {name: member.entry.job.follow.leader for name, member in members if member.entry.job.follow is not None}
+
+
+def _apart(axes: Any, apart: Mapping[str, tuple[Floats, Floats]]) -> None:
+    colours = colormaps["tab10"].colors  # type: ignore[attr-defined]
+    for i, (name, (t, distance)) in enumerate(apart.items()):
+        line(axes, t, distance, name, colours[i % len(colours)])
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("s")
+    finish(axes, "distances between vehicles, m", 6)
+
+
 def _tasks(axes: Any, run: RecordedRun) -> None:
     """A bar for each task from when it began to when it ended, or to the end of the run."""
     shown = [(i, task) for i, task in enumerate(run.tasks) if task.name]
@@ -129,11 +177,13 @@ def _tasks(axes: Any, run: RecordedRun) -> None:
         if begin is not None:
             end = run.end if task.state == TaskStatus.RUNNING else task.since
             axes.barh(row, max(end - begin, run.end / 300), left=begin, height=0.7, color=TASK_COLOURS.get(task.state, "#dddddd"))
-            if task.state == TaskStatus.FAILED:
-                axes.text(begin, row, f" {task.reason}", va="center", fontsize=8)
+        elif task.state in (TaskStatus.DONE, TaskStatus.FAILED):  # it only waited for something
+            axes.plot(task.since, row, "D", color=TASK_COLOURS[task.state], ms=8)
+        if task.state == TaskStatus.FAILED:
+            axes.text(task.since if begin is None else begin, row, f" {task.reason}", va="center", fontsize=8)
     axes.set_yticks(range(len(shown)), [INDENT * task.depth + task.name for _, task in shown], fontsize=8, ha="left")
     axes.tick_params(axis="y", pad=10 + 6 * max(len(INDENT) * task.depth * 0.5 + len(task.name) for _, task in shown))
     axes.invert_yaxis()
     axes.set_xlim(0, max(run.end, 1.0))
     axes.set_xlabel("s")
-    finish(axes, "tasks: green done, red failed, grey stopped, blue running at the end")
+    finish(axes, "tasks: green done, red failed, grey stopped, blue running at the end; diamonds: conditions waited for")

@@ -13,6 +13,7 @@ from launch.cli import app
 from launch.reports.drive_figures import drive_figures, pose_errors, touches
 from launch.reports.maps import reported_maps
 from launch.reports.recorded_run import recorded_run
+from launch.reports.team_page import distances
 from launch.run import run_lockstep
 from schemas import topics
 from schemas.messages import Contact, Event, Kind, NavState, NavStatus, PoseInFrame, Quaternion, Tasks, TaskStatus, Vector3, VehicleStatus
@@ -71,6 +72,16 @@ def test_one_page_tells_of_all_vehicles_and_loads_nothing(run, tmp_path):
     for name in ("burger", "milvus"):
         colours = np.unique(np.asarray(Image.open(tmp_path / "out" / f"{name}.png").convert("RGB")).reshape(-1, 3), axis=0)
         assert len(colours) > 100
+
+
+def test_the_distances_between_vehicles_are_those_of_their_true_ways(run):
+    with recorded_run(run) as recorded:
+        ((name, (t, distance)),) = distances(recorded).items()
+        rover, aircraft = (recorded.vehicles[v].rows("truth/state") for v in name.split(" to "))
+    assert t[0] < 0.5 and t[-1] > SECONDS - 0.5
+    for k in (0, len(t) // 2, -1):
+        places = [np.array([np.interp(t[k], path[:, 0], path[:, i]) for i in (1, 2, 3)]) for path in (rover, aircraft)]
+        assert distance[k] == pytest.approx(np.linalg.norm(places[0] - places[1]))
 
 
 def test_the_map_lies_in_the_world_and_is_scored(run):

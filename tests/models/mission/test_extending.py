@@ -46,6 +46,16 @@ def test_only_what_is_written_differs_and_lists_are_replaced_as_a_whole(folder):
     assert (other.seed, other.criteria, other.world) == (4, [], "house")
 
 
+def test_null_takes_out_what_the_other_one_says(folder):
+    path = variant(folder, "extends: ../base\nseed: null\nvehicles: {rover: {params: null}}\n")
+    other = load_mission(path)
+    assert (other.seed, other.vehicles["rover"].params) == (1, {})
+    (folder / "runs").mkdir()
+    changed = changed_mission(folder / "base.yaml", ["vehicles.rover.params=null", "vehicles.rover.model=my2bot"], folder / "runs")
+    rover = load_mission(changed).vehicles["rover"]
+    assert (rover.params, rover.model, rover.start.x) == ({}, "my2bot", 2.2)
+
+
 def test_a_file_is_found_from_the_folder_of_the_mission_that_names_it(folder):
     (task,) = load_mission(variant(folder, "extends: ../base\n")).tasks
     assert task.drive.track == "../tracks/a.csv"

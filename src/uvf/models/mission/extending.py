@@ -36,10 +36,11 @@ def _whole(path: Path, before: tuple[Path, ...]) -> Any:
 
 
 def merge(base: Any, change: Any) -> Any:
-    """``change`` put into ``base``: mappings key by key, everything else as a whole."""
+    """``change`` put into ``base``: mappings key by key, everything else as a whole; null takes a key out."""
     if not isinstance(base, dict) or not isinstance(change, dict):
         return change
-    return base | {key: merge(base.get(key), value) for key, value in change.items()}
+    changed = base | {key: merge(base.get(key), value) for key, value in change.items()}
+    return {key: value for key, value in changed.items() if value is not None or key not in change}
 
 
 def _moved(data: Any, was: Path, now: Path) -> Any:
