@@ -92,7 +92,8 @@ def _ways(axes: Any, run: RecordedRun) -> None:
     for i, (name, way) in enumerate(ways):
         if len(way):
             step, colour = max(len(way) // MOST_POINTS, 1), colours[i % len(colours)]
-            axes.plot(*way[::step].T, color=colour, lw=1.6, label=name)
+            width = 1.6 + (len(ways) - 1 - i if len(ways) <= FEW else 0)  # who goes where another one has gone does not hide its way
+            axes.plot(*way[::step].T, color=colour, lw=width, label=name)
             axes.plot(*way[0], "o", color=colour, ms=6)
             axes.plot(*way[-1], "s", color=colour, ms=6)
     axes.set_aspect("equal", adjustable="box")

@@ -36,14 +36,15 @@ class DriveTrack:
 
 
 def load_drive_track(path: Path) -> DriveTrack:
-    """Reads a CSV file with the columns t [s], linear [m/s], angular [rad/s]. Raises BadInput."""
+    """Reads a CSV file with the columns t [s], linear [m/s], angular [rad/s]; others are left out. Raises BadInput."""
     try:
         with path.open(newline="", encoding="utf-8") as file:
             rows = csv.reader(file)
-            header = tuple(name.strip() for name in next(rows, []))
-            if header != COLUMNS:
+            header = [name.strip() for name in next(rows, [])]
+            if not set(COLUMNS) <= set(header):
                 raise BadInput(f"{path}:1: the first line names the columns: {','.join(COLUMNS)}")
-            numbers = [_numbers(path, n, row) for n, row in enumerate(rows, start=2)]
+            places = [header.index(name) for name in COLUMNS]
+            numbers = [_numbers(path, n, row, places) for n, row in enumerate(rows, start=2)]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise BadInput(f"{path}: cannot be read: {error}") from error
     if not 1 <= len(numbers) <= MOST_ROWS:
@@ -54,12 +55,14 @@ def load_drive_track(path: Path) -> DriveTrack:
     return DriveTrack(table[:, 0] - table[0, 0], table[:, 1], table[:, 2])
 
 
-def _numbers(path: Path, line: int, row: Sequence[str]) -> list[float]:
+def _numbers(path: Path, line: int, row: Sequence[str], places: Sequence[int]) -> list[float]:
+    if len(row) <= max(places):
+        raise BadInput(f"{path}:{line}: give three finite numbers: {','.join(COLUMNS)}")
     try:
-        numbers = [float(text) for text in row]
+        numbers = [float(row[place]) for place in places]
     except ValueError as error:
         raise BadInput(f"{path}:{line}: {error}") from error
-    if len(numbers) != len(COLUMNS) or not np.isfinite(numbers).all():
+    if not np.isfinite(numbers).all():
         raise BadInput(f"{path}:{line}: give three finite numbers: {','.join(COLUMNS)}")
     return numbers
 

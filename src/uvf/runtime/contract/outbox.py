@@ -14,7 +14,7 @@ from uvf.runtime.messages.outputs import OutputMessages
 from uvf.runtime.messages.validation import error_in
 
 
-class Outbox:
+class OutputBox:
     """Of an instance of a service type, on a bus."""
 
     def __init__(self, type_: type[Service], owner: str, bus: Bus, links: LinkCuts) -> None:

@@ -17,7 +17,7 @@ from uvf.runtime.contract.declaration import Called, Frames, Input, StopInput, W
 from uvf.runtime.contract.inbox import AHEAD_MOST, EVERY_DEPTH, InputBox
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.link_cuts import LinkCuts
-from uvf.runtime.contract.outbox import Outbox
+from uvf.runtime.contract.outbox import OutputBox
 from uvf.runtime.contract.param_server import ParamServer
 from uvf.runtime.contract.request_desk import QUERIES_MOST, ContractError, RequestDesk
 from uvf.runtime.contract.service import Service
@@ -68,7 +68,7 @@ class ServiceRunner:
         if watchdog is not None and self._bulkhead is not None:
             self._limited = partial(watchdog.limited, time_limit(self.type.hz))
         self._links = LinkCuts(self.owner, host.faults, self.type.simulator)
-        self._outbox = Outbox(self.type, self.owner, bus, self._links)
+        self._outbox = OutputBox(self.type, self.owner, bus, self._links)
         self._calls = self._outbox.calls
         self.counters = Counters(self._outbox.published)
         self._desk = RequestDesk(self.type, self._outbox.put, self._refused)
