@@ -23,7 +23,7 @@ unless the meaning says otherwise. A key that is not listed here is an error, wh
 To begin, copy the nearest file in `missions/`, `worlds/` or `vehicles/`.
 
 A mission file may begin with `extends: NAME`, the path of another mission without `.yaml`: then it holds only what differs. Mappings are
-merged key by key; lists and values stand for those of the other file.
+merged key by key; lists and values stand for those of the other file, and null takes a key out.
 """
 FILES: tuple[tuple[str, type[msgspec.Struct], str], ...] = (
     ("Mission file", MissionFile, "`missions/<name>.yaml`: a world, vehicles with starts and jobs, and criteria."),
