@@ -1,6 +1,8 @@
 """The rest of the team, as the planner of one vehicle hears of it."""
 
 from collections import deque
+from math import hypot
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +12,7 @@ from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.planning.exploration import OthersGoal
 from uvf.planning.navigation.right_of_way import Traveller
 from uvf.planning.smoothing import from_place
+from uvf.runtime.messages.convert import seconds
 
 Point = tuple[float, float]
 Floats = NDArray[np.float64]
@@ -18,8 +21,18 @@ LATELY = 40  # times that they were heard
 MOST = 2000  # points of another vehicle's path that are looked at
 LARGEST = 2.5  # m, of the radius that a vehicle may say it has
 ABOVE = 2.0  # m above the vehicle, from where on nobody is in its way
+APART, FORGOTTEN = 0.15, 1.0  # s between two poses that a velocity is made of, at least and at most
+SLOWEST, FASTEST = 0.03, 5.0  # m/s, of one that moves; what is faster has jumped
 FARTHEST = 1e5  # m from the world's origin that a place may lie
 AT_IT = (NavStatus.DRIVING, NavStatus.RECOVERING)
+
+
+class _Motion(NamedTuple):
+    """Where one was at ``t`` [s], and how it moved [m/s]."""
+
+    t: float
+    place: Point
+    velocity: Point
 
 
 class Teammates:
@@ -31,10 +44,21 @@ class Teammates:
         self._own, self._radius, self._map_from_world = own, radius, inverse(world_from_map)
         self._been: deque[dict[str, Point]] = deque(maxlen=LATELY)
         self._flying: set[str] = set()
+        self._motions: dict[str, _Motion] = {}
         self._said: dict[str, NavStatus] = {}
         self._paths: dict[str, PosesInFrame] = {}
         self._points: dict[str, tuple[PosesInFrame, Floats]] = {}
         """(n, 2) m, of the paths that were looked at last."""
+
+    def _motion(self, name: str, pose: PoseInFrame) -> _Motion:
+        """By the last two poses that are some time apart."""
+        t, place, before = seconds(pose.timestamp), (pose.pose.position.x, pose.pose.position.y), self._motions.get(name)
+        if before is None or not 0.0 <= t - before.t <= FORGOTTEN:
+            return _Motion(t, place, (0.0, 0.0))
+        if t - before.t < APART:
+            return before
+        vx, vy = ((now - then) / (t - before.t) for now, then in zip(place, before.place, strict=True))
+        return _Motion(t, place, (vx, vy) if SLOWEST < hypot(vx, vy) < FASTEST else (0.0, 0.0))
 
     def hear(self, poses: dict[str, PoseInFrame], said: dict[str, NavStatus], paths: dict[str, PosesInFrame]) -> None:
         """What they publish now, by name; the vehicle's own are left out."""
@@ -43,6 +67,7 @@ class Teammates:
         own = poses.get(self._own)
         highest = ABOVE + (0.0 if own is None else own.pose.position.z)
         self._flying = {name for name in self.places if poses[name].pose.position.z > highest}
+        self._motions = {name: self._motion(name, poses[name]) for name in self.places}
         self._been.append(self.places)
         self._said, self._paths = said, paths
 
@@ -82,8 +107,17 @@ class Teammates:
     @property
     def present(self) -> Floats:
         """(n, 3) what those who do not fly above it cover now: x, y, radius [m, map]."""
-        names = [name for name in self.places if name not in self._flying]
+        names = self._on_the_ground
         return np.column_stack((self._in_map([self.places[name] for name in names]), [self._radius_of(name) for name in names]))
+
+    @property
+    def velocities(self) -> Floats:
+        """(n, 2) m/s, of the same, world axes; 0 of who stands, or jumps."""
+        return np.array([self._motions[name].velocity for name in self._on_the_ground]).reshape(-1, 2)
+
+    @property
+    def _on_the_ground(self) -> list[str]:
+        return [name for name in self.places if name not in self._flying]
 
     @property
     def discs(self) -> Floats:

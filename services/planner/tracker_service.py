@@ -35,9 +35,9 @@ from uvf.maths.se2 import IDENTITY, Pose2, transform
 from uvf.models.keys import key, plain
 from uvf.models.params import Params
 from uvf.models.vehicle.file import GroundBody
+from uvf.planning.costmap.discs import coming, disc_points, unseen
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation
-from uvf.planning.costmap.unseen_discs import unseen_points
 from uvf.planning.local.controller import ControllerSettings, Drive, LocalController
 from uvf.planning.local.goal_checker import GoalTolerances
 from uvf.planning.local.mppi import Mppi, MppiSettings
@@ -147,8 +147,7 @@ class TrackerService(Service):
             if (mask := self._keep_out.take(now.keep_out)) is not None:
                 controller.keep_out(mask.kept_out_near(self._pose[:2], KEEP_OUT_REACH))
             self._team.hear(now.team, now.team_nav, {})
-            shown = transform(seen.pose, seen.points[seen.ranges > 0.0])
-            controller.keep_out(unseen_points(self._team.present, shown, self._pose[:2], TEAM_REACH))
+            self._heed_team(controller, transform(seen.pose, seen.points[seen.ranges > 0.0]))
         if t - self._placer.t > SCAN_MAX_AGE:
             return self.stale(t, ("scan",))
         if now.odometry is not None:
@@ -167,6 +166,13 @@ class TrackerService(Service):
         """Zero velocity at ``t`` [s, simulation], without directive, path, pose or scan."""
         self._executor.controller.halt()
         return self.Outputs(drive=DriveCommand(timestamp=stamp(t)))
+
+    def _heed_team(self, controller: LocalController, shown: Floats) -> None:
+        """Those that the lidar does not show (n, 2) [m, world] are obstacles; those that come nearer are stopped for in time."""
+        team, here = self._team.present, self._pose[:2]
+        controller.keep_out(disc_points(unseen(team, shown), here, TEAM_REACH))
+        stops_within = 2.0 * PERIOD + abs(self._velocity[0]) / self.params.deceleration
+        controller.beware(disc_points(coming(team, self._team.velocities, stops_within), here, TEAM_REACH))
 
     def _share(self, grid: Grid | None) -> float:
         """Share [0..1] of the speed that is allowed where the vehicle is; nothing is said where nothing is drawn."""

@@ -306,6 +306,22 @@ def test_one_of_the_team_that_the_lidar_looks_over_is_not_driven_into():
     assert bench.pose[0] > 2.5
 
 
+def speed_before_one_that_was_at(before):
+    """m/s that is commanded where one of the team is 0.6 m ahead, as the lidar shows, and says that it was ``before`` [m ahead] then."""
+    bench = TrackerBench().step(12, ahead=5.0, moves=True)
+    for ahead in (before, before, 0.6, 0.6):
+        x = bench.pose[0] + ahead
+        bench.post = (x, 0.0)
+        told = mate(x, 0.0)
+        told["team"]["low"].timestamp.CopyFrom(stamp(bench.t + 0.08))
+        bench.step(1, ahead=5.0, **told)
+    return bench.speed
+
+
+def test_one_of_the_team_that_comes_nearer_is_stopped_for_earlier():
+    assert speed_before_one_that_was_at(0.75) < speed_before_one_that_was_at(0.6) - 0.05
+
+
 @pytest.mark.parametrize(
     "where", [(1.5, 0.0, 60.0), (np.nan, 0.0, 0.0), (0.05, 0.0, 0.0)], ids=["flies", "nowhere", "wrong about its place"]
 )

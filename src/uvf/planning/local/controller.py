@@ -120,6 +120,10 @@ class LocalController:
     def keep_out(self, points: Floats) -> None:
         """Points (n, 2) [m, the poses' frame] that are obstacles though no sensor sees them; told anew after each ``see``."""
         self.layer.mark(points, self._odometer)
+        self.beware(points)
+
+    def beware(self, points: Floats) -> None:
+        """Points (n, 2) [m, the poses' frame] that only the stop heeds, until the next ``see``: something is about to be there."""
         if self._pose is not None:
             self._near = np.concatenate((self._near, transform(inverse(self._pose), points)))
 

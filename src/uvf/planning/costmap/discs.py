@@ -1,0 +1,48 @@
+"""Vehicles of a team as discs: they are where they say they are, and in the way even where the lidar looks over them."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Point = tuple[float, float]
+
+BLURRED = 0.15  # m between where one says it is and where another one sees it
+NEAREST = 16  # vehicles about one
+SPACING = 0.05  # m between the points that stand for a disc
+MOMENTS = 4  # at which those that move are looked at
+
+
+def disc_points(discs: Floats, here: Point, reach: float) -> Floats:
+    """(m, 2) m points that cover the discs (k, 3), x, y and radius [m], within ``reach`` [m] of a vehicle at ``here`` [m].
+
+    Without one that ``here`` lies in: two vehicles cannot be there, so one of them is wrong about its place, and must not hold the other.
+    Of more than ``NEAREST`` the others are left out.
+    """
+    gap = np.hypot(*(discs[:, :2] - here).T) - discs[:, 2]
+    near = np.flatnonzero((gap > 0.0) & (gap <= reach))
+    nearest = discs[near[np.argsort(gap[near], kind="stable")][:NEAREST]]
+    return np.concatenate([np.zeros((0, 2)), *(_filled(radius) + np.array((x, y)) for x, y, radius in nearest.tolist())])
+
+
+def unseen(discs: Floats, seen: Floats) -> Floats:
+    """Those of the discs (k, 3) [m] that the points (n, 2) [m] which a lidar sees do not show: what it shows is known better."""
+    away = np.hypot(discs[:, None, 0] - seen[:, 0], discs[:, None, 1] - seen[:, 1])
+    hidden: Floats = discs[~(away <= discs[:, 2:] + BLURRED).any(axis=1)]
+    return hidden
+
+
+def coming(discs: Floats, velocities: Floats, ahead: float) -> Floats:
+    """(m, 3) m where the discs (k, 3) [m] that move by their velocities (k, 2) [m/s] are within the next ``ahead`` [s]."""
+    moving = np.hypot(*velocities.T) > 0.0
+    times = ahead * np.arange(1, MOMENTS + 1) / MOMENTS
+    places = discs[moving, None, :2] + times[:, None] * velocities[moving, None]
+    radii = np.broadcast_to(discs[moving, None, 2:], (*places.shape[:2], 1))
+    return np.concatenate((places, radii), axis=2).reshape(-1, 3)
+
+
+def _filled(radius: float) -> Floats:
+    """(m, 2) points of a grid within ``radius`` of the origin [m]."""
+    n = int(radius / SPACING)
+    points = SPACING * np.indices((2 * n + 1, 2 * n + 1)).reshape(2, -1).T - SPACING * n
+    inside: Floats = points[np.hypot(*points.T) <= radius]
+    return inside

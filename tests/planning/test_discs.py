@@ -1,0 +1,55 @@
+"""Vehicles of the team as obstacles: those that the lidar looks over, and those that come nearer."""
+
+import numpy as np
+import pytest
+
+from uvf.planning.costmap.discs import MOMENTS, NEAREST, SPACING, coming, disc_points, unseen
+
+NOTHING = np.zeros((0, 2))
+HERE = (1.0, -2.0)
+
+
+def at(*discs):
+    return np.array(discs).reshape(-1, 3)
+
+
+@pytest.mark.parametrize("radius", [0.02, 0.1, 0.33, 2.5])
+def test_points_cover_the_disc_and_nothing_else(radius):
+    points = disc_points(at((3.0, 1.0, radius)), HERE, 5.0)
+    away = np.hypot(*(points - (3.0, 1.0)).T)
+    assert away.max() <= radius + 1e-9
+    assert away.max() > radius - 1.5 * SPACING
+    assert len(points) * SPACING**2 == pytest.approx(np.pi * radius**2, abs=8 * radius * SPACING + SPACING**2)
+
+
+def test_what_is_far_or_here_is_left_out():
+    for x, y, counts in ((9.0, 1.0, False), (1.1, -2.0, False), (1.3, -2.0, True)):
+        assert (len(disc_points(at((x, y, 0.2)), HERE, 5.0)) > 0) == counts
+
+
+def test_of_a_crowd_the_nearest_count():
+    crowd = np.column_stack((np.linspace(1.5, 4.0, 100), np.full(100, -2.0), np.full(100, 0.01)))
+    points = disc_points(crowd[::-1], HERE, 5.0)
+    assert len(points) == NEAREST
+    assert points[:, 0].max() < 2.0
+
+
+def test_what_is_seen_is_known_better():
+    seen = np.array(((2.9, 1.0), (7.0, 7.0)))
+    discs = at((3.0, 1.0, 0.2), (2.4, 1.0, 0.2), (-1.0, 0.0, 0.1))
+    assert unseen(discs, seen).tolist() == discs[1:].tolist()
+    assert unseen(discs, NOTHING).tolist() == discs.tolist()
+
+
+def test_who_moves_is_looked_at_on_its_way_and_who_stands_is_not():
+    found = coming(at((3.0, 1.0, 0.2), (2.4, 1.0, 0.1)), np.array(((-0.4, 0.2), (0.0, 0.0))), 2.0)
+    assert found.shape == (MOMENTS, 3)
+    assert found[-1].tolist() == pytest.approx([2.2, 1.4, 0.2])
+    assert (np.diff(found[:, 0]) < 0.0).all()
+
+
+def test_nobody_covers_nothing():
+    nobody = np.zeros((0, 3))
+    assert disc_points(nobody, HERE, 5.0).shape == (0, 2)
+    assert unseen(nobody, NOTHING).shape == (0, 3)
+    assert coming(nobody, NOTHING, 1.0).shape == (0, 3)
