@@ -22,7 +22,7 @@ MOST = 2000  # points of another vehicle's path that are looked at
 LARGEST = 2.5  # m, of the radius that a vehicle may say it has
 ABOVE = 2.0  # m above the vehicle, from where on nobody is in its way
 APART, FORGOTTEN = 0.15, 1.0  # s between two poses that a velocity is made of, at least and at most
-SLOWEST, FASTEST = 0.03, 5.0  # m/s, of one that moves; what is faster has jumped
+SLOWEST, FASTEST = 0.08, 5.0  # m/s, of one that moves: a slower one may only be told of anew; what is faster has jumped
 FARTHEST = 1e5  # m from the world's origin that a place may lie
 AT_IT = (NavStatus.DRIVING, NavStatus.RECOVERING)
 
@@ -49,16 +49,6 @@ class Teammates:
         self._paths: dict[str, PosesInFrame] = {}
         self._points: dict[str, tuple[PosesInFrame, Floats]] = {}
         """(n, 2) m, of the paths that were looked at last."""
-
-    def _motion(self, name: str, pose: PoseInFrame) -> _Motion:
-        """By the last two poses that are some time apart."""
-        t, place, before = seconds(pose.timestamp), (pose.pose.position.x, pose.pose.position.y), self._motions.get(name)
-        if before is None or not 0.0 <= t - before.t <= FORGOTTEN:
-            return _Motion(t, place, (0.0, 0.0))
-        if t - before.t < APART:
-            return before
-        vx, vy = ((now - then) / (t - before.t) for now, then in zip(place, before.place, strict=True))
-        return _Motion(t, place, (vx, vy) if SLOWEST < hypot(vx, vy) < FASTEST else (0.0, 0.0))
 
     def hear(self, poses: dict[str, PoseInFrame], said: dict[str, NavStatus], paths: dict[str, PosesInFrame]) -> None:
         """What they publish now, by name; the vehicle's own are left out."""
@@ -124,6 +114,16 @@ class Teammates:
         """(n, 3) what they cover and have covered lately, and maps may still show: x, y, radius [m, map]."""
         been = sorted({(name, place) for places in self._been for name, place in places.items()})
         return np.column_stack((self._in_map([place for _, place in been]), [self._radius_of(name) for name, _ in been]))
+
+    def _motion(self, name: str, pose: PoseInFrame) -> _Motion:
+        """By the last two poses that are some time apart."""
+        t, place, before = seconds(pose.timestamp), (pose.pose.position.x, pose.pose.position.y), self._motions.get(name)
+        if before is None or not 0.0 <= t - before.t <= FORGOTTEN:
+            return _Motion(t, place, (0.0, 0.0))
+        if t - before.t < APART:
+            return before
+        vx, vy = ((now - then) / (t - before.t) for now, then in zip(place, before.place, strict=True))
+        return _Motion(t, place, (vx, vy) if SLOWEST < hypot(vx, vy) < FASTEST else (0.0, 0.0))
 
     def _radius_of(self, name: str) -> float:
         said = self._said.get(name)
