@@ -16,7 +16,7 @@ GIGABYTE = 1_000_000_000
 
 def runs_folder() -> Path:
     """The folder of recorded runs: UVF_RUNS, or ``runs/``."""
-    return Path(os.environ.get("UVF_RUNS", str(ROOT / "runs")))
+    return Path(os.environ.get("UVF_RUNS") or ROOT / "runs")
 
 
 def runs_quota() -> float:
