@@ -34,7 +34,14 @@ def _change(setting: str) -> dict[str, Any]:
     if not equals or not all(names):
         raise BadInput(f"--set {setting}: write it as vehicles.rover.model=burger")
     *outer, last = names
-    found: dict[str, Any] = {last: None if text.strip() in NULL else parse_yaml(text, f"--set {keys}") if text.strip() else ""}
+    found: dict[str, Any] = {last: _value(text, keys)}
     for name in reversed(outer):
         found = {name: found}
     return found
+
+
+def _value(text: str, keys: str) -> Any:
+    """What is written behind the ``=``. Raises BadInput."""
+    if text.strip() in NULL:
+        return None
+    return parse_yaml(text, f"--set {keys}") if text.strip() else ""

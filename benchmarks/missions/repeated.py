@@ -1,8 +1,7 @@
 """Every use case twice, and with twenty seeds.
 
 ``twice``: passed: every criterion holds; equal: both runs have the same hash; simulated [s], and how much faster than real time in one
-process. ``seeds``: runs that passed, and the 95 % interval of the success rate (Wilson); logs of those that did not
-are kept.
+process. ``seeds``: runs that passed, and the 95 % interval of the success rate (Wilson); logs of those that did not are kept.
 """
 
 import tempfile

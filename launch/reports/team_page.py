@@ -1,7 +1,7 @@
 """The picture of a whole run: every vehicle's way over the world and over the map that they share, and when each task ran."""
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -122,10 +122,12 @@ def _frame(axes: Any, points: Floats) -> None:
 
 def way_of(history: History) -> Floats:
     """Where a vehicle was, (k, 2) [m, world]: truly, where the truth is known, else as it was estimated."""
-    for stream in ("truth/state", "nav/state", "nav/pose"):
-        if len(rows := history.rows(stream)):
-            return rows[:, 1:3]
-    return np.zeros((0, 2))
+    return _first_known(history, ("truth/state", "nav/state", "nav/pose"))[:, 1:3]
+
+
+def _first_known(history: History, streams: Sequence[str]) -> Floats:
+    """Rows of the first of the streams that has any, each with the time [s] and a place [m, world] ahead; none where none has."""
+    return next((rows for stream in streams if len(rows := history.rows(stream))), np.zeros((0, 4)))
 
 
 def distances(run: RecordedRun) -> dict[str, tuple[Floats, Floats]]:
@@ -133,7 +135,8 @@ def distances(run: RecordedRun) -> dict[str, tuple[Floats, Floats]]:
 
     Of all pairs of a few vehicles; of more, only of those that follow with whom they follow.
     """
-    moved = {name: path for name, history in run.vehicles.items() if len(path := _moved(history)) > 1}
+    known = {name: _first_known(history, ("truth/state", "nav/state")) for name, history in run.vehicles.items()}
+    moved = {name: path for name, path in known.items() if len(path) > 1}
     pairs = list(itertools.combinations(moved, 2))
     if len(moved) > FEW:
         pairs = [(leader, name) for name, leader in _leaders(run).items() if name in moved and leader in moved]
@@ -145,14 +148,6 @@ def distances(run: RecordedRun) -> dict[str, tuple[Floats, Floats]]:
         if len(t):
             found[f"{one} to {other}"] = t, np.linalg.norm(places[0] - places[1], axis=1)
     return found
-
-
-def _moved(history: History) -> Floats:
-    """(k, 4) s and m, world: when it was where, truly, where the truth is known."""
-    for stream in ("truth/state", "nav/state"):
-        if len(rows := history.rows(stream)):
-            return rows[:, :4]
-    return np.zeros((0, 4))
 
 
 def _leaders(run: RecordedRun) -> dict[str, str]:

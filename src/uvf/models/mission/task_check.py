@@ -129,10 +129,7 @@ def check_batteries(tasks: list[Task], roles: Roles, without: Collection[str], f
     """Checks that who is to be charged, or whose charge is waited for, has a battery; without: vehicles that have none. Raises BadInput."""
     for task, place in _placed(tasks, file.at("tasks")):
         asked = [] if task.charge is None else [(task.charge.vehicle, place.at("charge", "vehicle"))]
-        for name, condition in (("when", task.when), ("until", task.until)):
-            if condition is not None and condition.charge_below is not None and condition.vehicle is not None:
-                asked.append((condition.vehicle, place.at(name, "charge_below")))
-        for who, where in asked:
+        for who, where in (*asked, *_conditions_on("charge_below", task, place)):
             for vehicle in members_of(who, roles):
                 if vehicle in without:
                     raise BadInput(f"{where}: {vehicle} has no battery; give its vehicle.yaml one")
@@ -142,13 +139,17 @@ def check_finders(tasks: list[Task], roles: Roles, seeing: Collection[str], file
     """Checks that who is to find markers looks for them; seeing: vehicles with a detector. Raises BadInput."""
     for task, place in _placed(tasks, file.at("tasks")):
         asked = [] if task.visit is None or task.visit.found is None else [(task.visit.found.by, place.at("visit", "found", "by"))]
-        for name, condition in (("when", task.when), ("until", task.until)):
-            if condition is not None and condition.found is not None and condition.vehicle is not None:
-                asked.append((condition.vehicle, place.at(name, "found")))
-        for who, where in asked:
+        for who, where in (*asked, *_conditions_on("found", task, place)):
             for vehicle in members_of(who, roles):
                 if vehicle not in seeing:
                     raise BadInput(f"{where}: {vehicle} looks for no markers; give it params: {{detector: {{}}}}, and a camera")
+
+
+def _conditions_on(about: str, task: Task, place: FileLocation) -> Iterator[tuple[Who, FileLocation]]:
+    """Of whose vehicles the task's conditions ask that, and where they do."""
+    for name, condition in (("when", task.when), ("until", task.until)):
+        if condition is not None and condition.vehicle is not None and getattr(condition, about) is not None:
+            yield condition.vehicle, place.at(name, about)
 
 
 def check_drivers(tasks: list[Task], roles: Roles, kinds: Mapping[str, str], file: FileLocation) -> None:

@@ -44,16 +44,14 @@ def give_way(own: Traveller, clearance: Floats, others: Sequence[Traveller]) -> 
     clearance: (n,) m from the points of its own path to the nearest obstacle.
     """
     along = way_along(own.path)
-    waits = [
-        _wait(own, (along, clearance), other._replace(path=resample(first_part(other.path, LOOKED)))) for other in others if len(other.path)
-    ]
+    waits = [_wait(own, (along, clearance), other._replace(path=_looked_at(other))) for other in others if len(other.path)]
     return min((wait for wait in waits if wait is not None), default=None)
 
 
 def that_meet(own: Traveller, others: Sequence[Traveller]) -> list[Traveller]:
     """Those of the others whose path comes so near to its own that one may have to wait; only they need ``give_way``."""
-    near = [(other, first_part(other.path, LOOKED)) for other in others if len(other.path)]
-    return [other for other, path in near if len(own.path) and cdist(own.path, resample(path)).min() < _apart(own, other)]
+    moving = [other for other in others if len(other.path) and len(own.path)]
+    return [other for other in moving if cdist(own.path, _looked_at(other)).min() < _apart(own, other)]
 
 
 def is_first_of_circle(own: str, for_whom: str, waiting: Mapping[str, str]) -> bool:
@@ -75,6 +73,11 @@ def _wait(own: Traveller, way: tuple[Floats, Floats], other: Traveller) -> Wait 
         if _comes_first(own, other, (along, passage), apart):
             return Wait(_waiting_place(own.path[: passage.start + 1], along, other.path, apart), other.name)
     return None
+
+
+def _looked_at(other: Traveller) -> Floats:
+    """(n, 2) m of another one's path, at even distances."""
+    return resample(first_part(other.path, LOOKED))
 
 
 def _apart(own: Traveller, other: Traveller) -> float:
