@@ -33,8 +33,15 @@ def test_tracks_grow_in_the_scene_and_on_the_screen(page):
     assert until(page, lambda: pixels(page, TRACK_BLUE) > max(1.2 * seen, 30)), (seen, pixels(page, TRACK_BLUE))
 
 
+def track_drawn(page):
+    """Pixels of the track once it is a long one: the first frames of a page are of another blue, and little of it is the vehicle's own."""
+    assert until(page, lambda: page.evaluate(TRACK, UGV) > 120)
+    assert until(page, lambda: 45 < pixels(page, TRACK_BLUE) < 5000), pixels(page, TRACK_BLUE)
+    return pixels(page, TRACK_BLUE)
+
+
 def test_a_hidden_track_leaves_the_screen(page, station):
-    seen = pixels(page, TRACK_BLUE)
+    seen = track_drawn(page)
     page.get_by_text("Layers", exact=True).click()
     page.get_by_label("Tracks").uncheck()
     assert until(page, lambda: pixels(page, TRACK_BLUE) < 0.5 * seen)
@@ -250,12 +257,10 @@ def test_text_from_the_bus_is_shown_not_run(page, station):
 
 
 def test_a_page_that_joins_late_sees_the_same(page, browser, station):
+    assert until(page, lambda: page.evaluate(TRACK, UGV) > 30)
     station.moving = False  # the first page need not draw meanwhile: software rendering is slow
-    page.wait_for_timeout(1000)  # what has moved is drawn
-    here = page.evaluate(TRACK, UGV)
-    assert here > 30
     with opened(browser, station.port, f"/vehicles/{UGV}/0", (700, 400)) as late:
-        assert until(late, lambda: late.evaluate(TRACK, UGV) == here), (here, late.evaluate(TRACK, UGV))
+        assert until(late, lambda: late.evaluate(TRACK, UGV) == page.evaluate(TRACK, UGV) > 30), late.evaluate(TRACK, UGV)
     station.moving = True
 
 

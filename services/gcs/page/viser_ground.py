@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 GRID, GROUND = -0.12, -0.35  # m
-WIDE = 12_000.0  # m
-QUAD = np.array(((0, 1, 2), (0, 2, 3)), dtype=np.uint32)
+EDGES = np.array((-12_000, -3000, -800, -200, -50, -12, 0, 12, 50, 200, 800, 3000, 12_000), dtype=np.float32)
+"""Where the plane is cut [m], along x and y: what is drawn in software gets the depth of a triangle of kilometres wrong by half a metre,
+and the floor of a house lay below the ground."""
 
 Rgb = tuple[int, int, int]
 
@@ -43,10 +44,18 @@ def dress(scene: Any, theme: str) -> None:
         fade_distance=900.0,
         position=(0, 0, GRID),
     )
-    corners = np.array([(x, y, GROUND) for x, y in ((-WIDE, -WIDE), (WIDE, -WIDE), (WIDE, WIDE), (-WIDE, WIDE))], dtype=np.float32)
     # Opaque: what is see-through, as the unknown part of a map, lets only what is opaque be seen.
-    scene.add_mesh_simple("/ground/plane", corners, QUAD, color=colours.plane, flat_shading=True, side="double", cast_shadow=False)
+    scene.add_mesh_simple("/ground/plane", *plane(), color=colours.plane, flat_shading=True, side="double", cast_shadow=False)
     scene.set_background_image(sky(colours), format="png")
+
+
+def plane() -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+    """Vertices (n, 3) [m] and faces (m, 3) of the ground, in triangles that are small where the worlds are."""
+    x, y = np.meshgrid(EDGES, EDGES, indexing="ij")
+    vertices = np.stack((x, y, np.full_like(x, GROUND)), axis=-1).reshape(-1, 3)
+    at = np.arange(len(vertices), dtype=np.uint32).reshape(x.shape)
+    a, b, c, d = (part.ravel() for part in (at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]))
+    return vertices, np.concatenate((np.stack((a, b, c), axis=1), np.stack((a, c, d), axis=1)))
 
 
 def light(scene: Any) -> None:
