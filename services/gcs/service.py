@@ -109,6 +109,8 @@ NEWEST = (
     "rally",
 )
 """Inputs by vehicle that are kept under their names as the newest of their kind."""
+ALONE_PERIOD = 1.0
+"""Seconds between two pictures while no browser looks; who comes finds a scene that stands, and the picture of that step."""
 
 
 class GroundStation(Service):
@@ -209,6 +211,7 @@ class GroundStation(Service):
         self._exporter, self._surveys = exporter, surveys
         self._history = RecentHistory()
         self._logged = 0
+        self._drawn = -ALONE_PERIOD
         time = TimeTravel(self._model, self._history, exporter)
         self._commander = Commander(self._model, time, surveys)
         self._listening = BusListening(self._model, watch)
@@ -267,7 +270,9 @@ class GroundStation(Service):
         self._history.note(t, self._model.log.since(self._logged))
         self._logged = self._model.log.count
         self._commander.time.step(t)
-        self._page.show(self._composer.picture(t))
+        if self._model.sessions or t >= self._drawn + ALONE_PERIOD:
+            self._drawn = t
+            self._page.show(self._composer.picture(t))
         outputs = self.Outputs()
         outputs.update(out.said())
         return outputs

@@ -6,6 +6,8 @@ from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
 from services.gcs.actions.page import (
     Command,
     FleetTable,
+    Hello,
+    Join,
     Layer,
     Leave,
     Looking,
@@ -229,3 +231,16 @@ def test_the_fleet_is_a_table_for_who_asks_for_it(station):
     assert not station.page.seen_by(OTHER).html["table"]
     station.press(FleetTable(ME, False), seconds=0.5)
     assert not station.page.now.html["table"]
+
+
+def test_while_nobody_looks_the_scene_is_drawn_once_a_second_and_at_once_for_who_comes(station):
+    station.press(Leave(ME), Leave(OTHER), seconds=0.05)
+    before = len(station.page.pictures)
+    station.run(3.0)
+    assert len(station.page.pictures) - before == 3
+    station.run(0.5)
+    station.press(Join(ME), Hello(ME, OPERATORS[ME], ""), seconds=0.05)
+    assert station.page.pictures[-1].panels.keys() == {ME}
+    before = len(station.page.pictures)
+    station.run(1.0)
+    assert len(station.page.pictures) - before == 20
