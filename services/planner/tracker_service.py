@@ -170,7 +170,7 @@ class TrackerService(Service):
     def _heed_team(self, controller: LocalController, shown: Floats) -> None:
         """Those that the lidar does not show (n, 2) [m, world] are obstacles; those that come nearer are stopped for in time."""
         team, here = self._team.present, self._pose[:2]
-        controller.keep_out(disc_points(unseen(team, shown), here, TEAM_REACH))
+        controller.keep_out(disc_points(unseen(team, shown, here), here, TEAM_REACH))
         stops_within = 2.0 * PERIOD + abs(self._velocity[0]) / self.params.deceleration
         controller.beware(disc_points(coming(team, self._team.velocities, stops_within), here, TEAM_REACH))
 

@@ -35,10 +35,28 @@ def test_of_a_crowd_the_nearest_count():
 
 
 def test_what_is_seen_is_known_better():
-    seen = np.array(((2.9, 1.0), (7.0, 7.0)))
-    discs = at((3.0, 1.0, 0.2), (2.4, 1.0, 0.2), (-1.0, 0.0, 0.1))
-    assert unseen(discs, seen).tolist() == discs[1:].tolist()
-    assert unseen(discs, NOTHING).tolist() == discs.tolist()
+    seen = np.array(((2.8, 0.8), (7.0, 7.0)))
+    discs = at((3.0, 1.0, 0.3), (2.2, 1.0, 0.2), (-1.0, 0.0, 0.1))
+    assert unseen(discs, seen, HERE).tolist() == discs[1:].tolist()
+    assert unseen(discs, NOTHING, HERE).tolist() == discs.tolist()
+
+
+@pytest.mark.parametrize("heading", np.linspace(0.0, 2 * np.pi, 9))
+@pytest.mark.parametrize("slant", np.linspace(0.0, 1.5, 8))
+@pytest.mark.parametrize("beside", [-0.3, -0.16, 0.16, 0.3])
+def test_a_wall_that_one_stands_along_does_not_show_it(heading, slant, beside):
+    """A disc 0.2 m in radius with a wall 0.16 m beside its middle, as of a narrow body, looked at along the wall and towards it."""
+    along, across = np.array((np.cos(heading), np.sin(heading))), np.array((-np.sin(heading), np.cos(heading)))
+    disc = np.array((3.0, 1.0))
+    wall = disc + beside * across + np.linspace(-3.0, 3.0, 121)[:, None] * along
+    way = np.cos(slant) * along + np.sin(slant) * np.sign(beside) * across
+    assert len(unseen(at((*disc, 0.2)), wall, tuple(disc - 1.5 * way))) == 1
+
+
+def test_a_body_is_shown_though_it_is_a_little_away_from_where_it_says():
+    body = np.array((3.0, 1.0)) + 0.12 * np.column_stack((np.cos(np.linspace(0, 6.2, 40)), np.sin(np.linspace(0, 6.2, 40))))
+    for x, y in ((0.0, 0.0), (0.12, 0.0), (-0.12, 0.0), (0.0, 0.12), (0.0, -0.12), (0.1, 0.1), (-0.1, -0.1)):
+        assert len(unseen(at((3.0 + x, 1.0 + y, 0.2)), body, HERE)) == 0, (x, y)
 
 
 def test_who_moves_is_looked_at_on_its_way_and_who_stands_is_not():
@@ -51,5 +69,5 @@ def test_who_moves_is_looked_at_on_its_way_and_who_stands_is_not():
 def test_nobody_covers_nothing():
     nobody = np.zeros((0, 3))
     assert disc_points(nobody, HERE, 5.0).shape == (0, 2)
-    assert unseen(nobody, NOTHING).shape == (0, 3)
+    assert unseen(nobody, NOTHING, HERE).shape == (0, 3)
     assert coming(nobody, NOTHING, 1.0).shape == (0, 3)

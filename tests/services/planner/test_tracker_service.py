@@ -297,8 +297,11 @@ def mate(x, y, z=0.0):
     return {"team": {"low": PoseInFrame(pose=planar_pose(x, y, 0.0, z))}, "team_nav": {"low": NavStatus(radius=0.2)}}
 
 
-def test_one_of_the_team_that_the_lidar_looks_over_is_not_driven_into():
+@pytest.mark.parametrize("beside", [None, (1.5, -0.42), (1.72, -0.36), (1.85, 0.0)])
+def test_one_of_the_team_that_the_lidar_looks_over_is_not_driven_into(beside):
+    """Nor where it stands beside or before something that the lidar does show."""
     bench = TrackerBench()
+    bench.post = beside
     for _ in range(120):
         bench.step(1, ahead=5.0, moves=True, **mate(1.5, 0.0))
     distances = np.hypot(*(np.array(bench.places) - (1.5, 0.0)).T)

@@ -24,10 +24,20 @@ def disc_points(discs: Floats, here: Point, reach: float) -> Floats:
     return np.concatenate([np.zeros((0, 2)), *(_filled(radius) + np.array((x, y)) for x, y, radius in nearest.tolist())])
 
 
-def unseen(discs: Floats, seen: Floats) -> Floats:
-    """Those of the discs (k, 3) [m] that the points (n, 2) [m] which a lidar sees do not show: what it shows is known better."""
-    away = np.hypot(discs[:, None, 0] - seen[:, 0], discs[:, None, 1] - seen[:, 1])
-    hidden: Floats = discs[~(away <= discs[:, 2:] + BLURRED).any(axis=1)]
+def unseen(discs: Floats, seen: Floats, here: Point) -> Floats:
+    """Those of the discs (k, 3) [m] that the points (n, 2) [m] which a lidar at ``here`` sees do not show: what it shows is known better.
+
+    A disc is shown by what is seen about or before the middle of it: a wall that it stands beside, or that is seen above it, hides
+    nobody, if it is half the radius away from the middle or more.
+    """
+    middles = discs[:, None, :2]
+    beams = middles - here
+    ahead = beams / np.maximum(np.linalg.norm(beams, axis=2, keepdims=True), 1e-9)
+    offset = seen - middles
+    before = -(offset * ahead).sum(axis=2)
+    beside = np.abs(offset[..., 0] * ahead[..., 1] - offset[..., 1] * ahead[..., 0])
+    shows = (before >= -discs[:, 2:] / 4) & (beside <= discs[:, 2:] / 2) & (np.hypot(before, beside) <= discs[:, 2:] + BLURRED)
+    hidden: Floats = discs[~shows.any(axis=1)]
     return hidden
 
 
