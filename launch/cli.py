@@ -101,7 +101,7 @@ def up(
     change: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
 ) -> None:
     """Start a whole mission: every service in its own process, watched over, until Ctrl-C."""
-    from launch.changed_mission import changed_mission
+    from launch.changed_mission import changed_mission, load_changed
     from launch.runs import new_run
     from launch.up import StartOptions
     from launch.up import up as run_up
@@ -115,6 +115,7 @@ def up(
         if gcs:
             claim(address)
         os.environ |= {HOST: address.host, TOKEN: address.token}  # the page's process has the token that is printed here
+        load_changed(path, change or [])
         folder = new_run()
         mission = str(changed_mission(path, change, folder)) if change else mission
         say(f"mission {path.stem}; logs in {folder}")
@@ -134,8 +135,11 @@ def run(
 ) -> None:
     """Run a mission in one process, as fast as it goes, and score it: exit code 0 when every criterion holds. 'uvf up' runs it live."""
     from launch.commands.run import run_and_report, run_campaign
+    from uvf.models.yaml_data import BadInput
 
     with bad_input_is_one_line():
+        if seeds is not None and log is not None:
+            raise BadInput("--log: each of --seeds has a log of its own, in runs/; leave one of the two out")
         if seeds is not None:
             raise typer.Exit(run_campaign(mission, seeds, until, change or []))
         raise typer.Exit(run_and_report(mission, until, log, change or []))

@@ -31,6 +31,21 @@ def new_run() -> Path:
     return folder
 
 
+@contextlib.contextmanager
+def given_up_when_refused(folder: Path) -> Iterator[None]:
+    """Removes the folder of a run that is refused before anything was recorded; ``latest`` is the run before it again."""
+    try:
+        yield
+    except BadInput:
+        base = settings.runs_folder()
+        if folder.parent == base and not any(folder.rglob("*.mcap")):
+            shutil.rmtree(folder, ignore_errors=True)
+            (base / "latest").unlink(missing_ok=True)
+            if before := _runs(base):
+                _point(base / "latest", before[-1])
+        raise
+
+
 def _make(base: Path, stamp: str) -> Path:
     """Another run may begin in the same second."""
     for n in range(1000):

@@ -5,6 +5,7 @@ Imports nothing heavy: a misspelt name is answered before any engine is loaded.
 
 import contextlib
 import difflib
+import math
 import os
 from pathlib import Path
 
@@ -21,11 +22,14 @@ def runs_folder() -> Path:
 
 def runs_quota() -> float:
     """Size [bytes] that old runs may take together, from UVF_RUNS_QUOTA_GB. Raises BadInput."""
-    text = os.environ.get("UVF_RUNS_QUOTA_GB", "5")
+    text = os.environ.get("UVF_RUNS_QUOTA_GB") or "5"
     try:
-        return float(text) * GIGABYTE
-    except ValueError as error:
-        raise BadInput(f"UVF_RUNS_QUOTA_GB={text}: not a number of gigabytes") from error
+        quota = float(text)
+    except ValueError:
+        quota = math.nan
+    if not quota >= 0:
+        raise BadInput(f"UVF_RUNS_QUOTA_GB={text}: not a number of gigabytes")
+    return quota * GIGABYTE
 
 
 def mission_path(name: str) -> Path:
@@ -34,6 +38,8 @@ def mission_path(name: str) -> Path:
         if path.is_file():
             return path
     _look_at(Path(name))
+    if Path(name).exists():
+        raise BadInput(f"{name}: is no file; name a mission file, or a mission in missions/")
     known = [p.stem for p in (ROOT / "missions").glob("*.yaml")]
     raise BadInput(f"no mission '{name}'; {nearest(Path(name).stem, known)}")
 

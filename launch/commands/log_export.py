@@ -14,7 +14,7 @@ from google.protobuf.message import DecodeError
 
 from launch.reports.foxglove import foxglove_layout
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.log.folder import run_folder
+from uvf.runtime.log.folder import refuse_log, run_folder
 from uvf.runtime.log.run_samples import matching_keys, run_keys, run_samples
 from uvf.runtime.messages.fields import Getter, columns_of
 from uvf.runtime.messages.step_times import NS
@@ -89,6 +89,7 @@ def export_log(run: Path, keys: Sequence[str], kind: Kind, out: Path | None) -> 
 def save_layout(run: Path, out: Path | None) -> None:
     """Writes the layout for Foxglove to ``out``, or beside the log. Raises BadInput."""
     target = out or run_folder(run) / "foxglove.json"
+    refuse_log(target, "a layout")
     try:
         target.write_text(json.dumps(foxglove_layout(run_keys(run)), indent=2), encoding="utf-8")
     except OSError as error:

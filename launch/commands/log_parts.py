@@ -9,7 +9,7 @@ import typer
 from services.gcs.page.viser_replay import write_replay
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.log.excerpt import Span, excerpt
-from uvf.runtime.log.folder import logs_of
+from uvf.runtime.log.folder import logs_of, refuse_log
 from uvf.runtime.messages.step_times import NS
 
 END = 2**63
@@ -25,6 +25,7 @@ def cut_log(run: Path, begin: float, end: float, out: Path | None) -> None:
 def make_page(run: Path, begin: float, end: float, out: Path | None) -> None:
     """Writes the page that plays a span [s, simulation] of a run to ``out`` or beside it. Raises BadInput."""
     target = out or _beside(run, ".html")
+    refuse_log(target, "a page")
     with tempfile.TemporaryDirectory() as folder:
         part = Path(folder) / "part.mcap"
         excerpt(logs_of(run), part, _span(begin, end))

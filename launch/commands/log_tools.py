@@ -14,6 +14,7 @@ from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.zenoh_bus import ZenohBus
 from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.log.folder import recovered_path
 from uvf.runtime.log.reading import log_begin, log_metadata, read_log
 from uvf.runtime.log.recovery import recover
 from uvf.runtime.log.replay import into_service, logged_site, onto_bus
@@ -98,5 +99,5 @@ def describe_log(log: Path) -> None:
 
 def recover_log(log: Path, out: Path | None) -> None:
     """Saves the readable part of a log that was cut off into ``out`` or beside it."""
-    target = out or log.with_name(f"{log.stem}-recovered.mcap")
+    target = out or recovered_path(log)
     typer.echo(f"{recover(log, target, lambda line: typer.echo(line, err=True))} messages saved into {target}")

@@ -14,15 +14,19 @@ from rich.table import Table
 
 from launch import settings
 from launch.campaign import SeedRun, run_seeds, success_interval
-from launch.changed_mission import changed_mission
+from launch.changed_mission import changed_mission, load_changed
 from launch.run import Result, run_lockstep
-from launch.runs import new_run
+from launch.runs import given_up_when_refused, new_run
 from launch.scoring.last_words import why
 from launch.scoring.scores import Verdict
 from launch.vehicles.mission_faults import warnings
+from schemas import topics
 from uvf.models.scenario import load_scenario
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.log.reading import is_log
 from uvf.runtime.messages.validation import escaped
+
+TICK = 1 / topics.CLOCK.hz  # s
 
 console = Console()
 
@@ -33,9 +37,17 @@ def run_and_report(mission: str, until: float | None, log: Path | None, changes:
     Raises BadInput.
     """
     base = settings.mission_path(mission)
-    log = log or new_run() / "log-000.mcap"
+    until = _until(until, load_changed(base, changes).mission.duration)
+    if log is not None:
+        _check_log(log)
+        return _run(base, changes, until, log)
+    folder = new_run()
+    with given_up_when_refused(folder):
+        return _run(base, changes, until, folder / "log-000.mcap")
+
+
+def _run(base: Path, changes: list[str], until: float, log: Path) -> int:
     site = load_scenario(changed_mission(base, changes, log.parent))
-    until = _until(until, site.mission.duration)
     for line in warnings(site):
         typer.echo(f"uvf: {line}", err=True)
     with _progress(site.mission_path.stem, until) as (bar, advance):
@@ -47,19 +59,28 @@ def run_and_report(mission: str, until: float | None, log: Path | None, changes:
 
         result = run_lockstep(site, until, log, watch, lambda line: bar.console.print(line, markup=False))
     _print_result(result, log)
-    return 0 if result.passed else 1
+    return 0 if result.passed and not result.recording_error else 1
+
+
+def _check_log(log: Path) -> None:
+    """Raises BadInput for what would be lost under a log."""
+    if log.is_file() and log.stat().st_size and not is_log(log):
+        raise BadInput(f"--log {log}: is there and is no log; choose another name")
+    if log.is_file() and log.stat().st_size:
+        typer.echo(f"uvf: {log}: the log that was there is replaced", err=True)
 
 
 def run_campaign(mission: str, seeds: int, until: float | None, changes: list[str]) -> int:
     """Runs with several seeds and prints success rate and spread; 0 when all have passed, else 1. Raises BadInput."""
-    folder = new_run()
-    path = changed_mission(settings.mission_path(mission), changes, folder)
-    site = load_scenario(path)
-    for line in warnings(site):
+    base = settings.mission_path(mission)
+    until = None if until is None else _until(until, math.inf)
+    for line in warnings(load_changed(base, changes)):
         typer.echo(f"uvf: {line}", err=True)
+    folder = new_run()
+    path = changed_mission(base, changes, folder)
     runs: list[SeedRun] = []
-    with _progress(f"{path.stem}, {seeds} seeds", seeds, "runs") as (_, advance):
-        for run in run_seeds(path, seeds, None if until is None else _until(until, math.inf), folder):
+    with given_up_when_refused(folder), _progress(f"{path.stem}, {seeds} seeds", seeds, "runs") as (_, advance):
+        for run in run_seeds(path, seeds, until, folder):
             runs.append(run)
             advance(len(runs))
     _print_campaign(sorted(runs, key=lambda run: run.seed))
@@ -68,8 +89,8 @@ def run_campaign(mission: str, seeds: int, until: float | None, changes: list[st
 
 def _until(given: float | None, duration: float) -> float:
     until = given if given is not None else duration
-    if not 0 < until < math.inf:
-        raise BadInput(f"--until {until}: how long to simulate, more than 0 s")
+    if not TICK <= until < math.inf:
+        raise BadInput(f"--until {until:g}: how long to simulate, {TICK:g} s at least")
     return until
 
 

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from launch.runs import hold, keep_quota, new_run, prune
+from launch.runs import given_up_when_refused, hold, keep_quota, new_run, prune
 from uvf.models.yaml_data import BadInput
 
 
@@ -42,6 +42,26 @@ def test_the_oldest_go_first_and_the_newest_stays(base):
     assert [f.name for f in prune(base, 2500)] == ["2026-01-01_10-00-00"]
     assert [f.name for f in prune(base, 10)] == ["2026-01-02_10-00-00"]
     assert left(base) == [3]
+
+
+@pytest.mark.parametrize("text", ["nan", "-1", "much"])
+def test_a_quota_that_is_none_removes_nothing(base, monkeypatch, text):
+    monkeypatch.setenv("UVF_RUNS_QUOTA_GB", text)
+    with pytest.raises(BadInput, match="not a number of gigabytes"):
+        new_run()
+    assert left(base) == [1, 2, 3]
+
+
+def test_a_run_that_is_refused_leaves_nothing_and_the_one_before_is_the_latest(base):
+    first = new_run()
+    (first / "log-000.mcap").write_bytes(b"x")
+    with pytest.raises(BadInput, match="no"), given_up_when_refused(folder := new_run()):
+        raise BadInput("no")
+    assert not folder.exists()
+    assert (base / "latest").resolve() == first.resolve()
+    with pytest.raises(BadInput, match="late"), given_up_when_refused(first):
+        raise BadInput("late")
+    assert (first / "log-000.mcap").exists()
 
 
 def test_runs_of_one_second_are_told_apart_by_their_numbers(tmp_path):

@@ -3,7 +3,7 @@
 import pytest
 import yaml
 
-from launch.changed_mission import changed_mission
+from launch.changed_mission import changed_mission, load_changed
 from uvf.models.mission.file import load_mission
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
@@ -83,7 +83,7 @@ def test_parameters_of_the_mission_come_before_those_of_the_vehicles_file(folder
 
 def test_a_changed_mission_is_a_file_that_can_be_run_again(folder):
     path = changed_mission(folder / "base.yaml", ["vehicles.rover.model=my3bot", "seed=7", "vehicles.rover.start.x=3.5"], folder / "run")
-    assert yaml.safe_load(path.read_text())["extends"] == "../base"
+    assert yaml.safe_load(path.read_text())["extends"] == "../base.yaml"
     mission = load_mission(path)
     rover = mission.vehicles["rover"]
     assert (rover.model, rover.start.x, rover.start.y, mission.seed) == ("my3bot", 3.5, 1.3, 7)
@@ -91,7 +91,34 @@ def test_a_changed_mission_is_a_file_that_can_be_run_again(folder):
     assert not (folder / "none").exists()
 
 
-@pytest.mark.parametrize("setting", ["seed", "=3", "vehicles..x=1", "seed=[1"])
+def test_null_takes_out_whatever_was_set_before_and_what_is_not_there_cannot_be_taken_out(folder):
+    def changed(*settings):
+        return load_mission(changed_mission(folder / "base.yaml", list(settings), folder))
+
+    assert changed("criteria=null").criteria == []
+    assert changed("vehicles.rover.system_id=4", "vehicles.rover.params=null").vehicles["rover"].params == {}
+    with pytest.raises(BadInput, match=r"--set vehicles.rover.parms=null: the mission has no 'parms' there; did you mean 'params'?"):
+        changed("vehicles.rover.parms=null")
+
+
+@pytest.mark.parametrize("name", ["base.yaml", "base.v2.yaml", "base.yml"])
+def test_the_mission_that_is_changed_stays_as_it_is_and_is_no_other_one(folder, name):
+    """Also where the changed one is to lie beside it, and another one is called like the first part of its name."""
+    (folder / name).write_text(BASE.replace("seed: 4", "seed: 5"))
+    for _ in range(2):
+        path = changed_mission(folder / name, ["duration=3"], folder)
+        assert path.name not in ("base.yaml", "base.v2.yaml", "base.yml")
+        assert (load_mission(path).seed, load_mission(path).duration) == (5, 3.0)
+    assert "seed: 5" in (folder / name).read_text()
+
+
+def test_what_is_wrong_with_a_value_is_said_of_the_mission_and_not_of_a_file_made_for_it(folder):
+    with pytest.raises(BadInput) as error:
+        load_changed(folder / "base.yaml", ["vehicles.rover.modle=x"])
+    assert str(error.value).startswith(f"{folder / 'base.yaml'} as --set changes it: vehicles: rover: modle: unknown key")
+
+
+@pytest.mark.parametrize("setting", ["seed", "=3", "vehicles..x=1", "seed=[1", "about=#x"])
 def test_a_setting_that_is_none_is_one_line(folder, setting):
     with pytest.raises(BadInput, match="--set"):
         changed_mission(folder / "base.yaml", [setting], folder / "run")

@@ -10,6 +10,7 @@ EXTENDS = "extends"
 REFERENCES = ("track", "program", "known", "continues", "keepout", "speed")
 """Keys whose texts may be paths relative to the mission file's folder."""
 LONGEST_CHAIN = 5
+ENDINGS = (".yaml", ".yml")
 
 
 def whole_mission(path: Path) -> Any:
@@ -24,8 +25,8 @@ def _whole(path: Path, before: tuple[Path, ...]) -> Any:
     place = FileLocation(str(path)).at(EXTENDS)
     name = data[EXTENDS]
     if not isinstance(name, str) or not name:
-        raise BadInput(f"{place}: name the mission file that is extended, as 'dubins' or '../dubins'")
-    base = (path.parent / name).with_suffix(".yaml").resolve()
+        raise BadInput(f"{place}: name the mission file that is extended, as 'dubins' or '../dubins.yaml'")
+    base = (path.parent / (name if name.endswith(ENDINGS) else f"{name}.yaml")).resolve()
     if base in (path.resolve(), *before) or len(before) >= LONGEST_CHAIN:
         raise BadInput(f"{place}: {name} leads round in a circle, or over more than {LONGEST_CHAIN} files")
     if not base.is_file():

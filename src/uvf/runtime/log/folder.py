@@ -1,6 +1,7 @@
 """Where the logs of a run are, the one that is being recorded and those of the past."""
 
 import os
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -8,6 +9,8 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.log.reading import restarts_of
 
 LOG_FOLDER = "UVF_LOG_FOLDER"
+RECOVERED = "recovered"
+_LOG = re.compile(r"log-\d+\.mcap")
 
 
 def log_folder(environment: Mapping[str, str] = os.environ) -> Path | None:
@@ -24,12 +27,31 @@ def run_folder(run: Path) -> Path:
 def logs_of(run: Path) -> list[Path]:
     """The files of a run's folder in their order, or the one log that is named. Raises BadInput.
 
-    Where the simulation was reset, those since then: what was before is found by the names of its files.
+    Where the simulation was reset, those since then: what was before is found by the names of its files. One that was recovered stands
+    for the broken one; parts that were cut out are found by their names, too.
     """
     if not run.is_dir():
         return [run]
-    found = sorted(run.glob("log-*.mcap"), key=lambda p: (len(p.name), p.name))
+    numbered = sorted((p for p in run.iterdir() if _LOG.fullmatch(p.name)), key=lambda p: (len(p.name), p.name))
+    found = [_best(log) for log in numbered]
     if not found:
         raise BadInput(f"{run}: no log-*.mcap in this folder: name the folder of a run or a log")
     restarts = [restarts_of(log) for log in found]
     return [log for log, count in zip(found, restarts, strict=True) if count == restarts[-1]]
+
+
+def _best(log: Path) -> Path:
+    """The log, or what was recovered of it since it was last written."""
+    recovered = recovered_path(log)
+    return recovered if recovered.is_file() and recovered.stat().st_mtime >= log.stat().st_mtime else log
+
+
+def recovered_path(log: Path) -> Path:
+    """Where the readable part of a log that was cut off is saved."""
+    return log.with_name(f"{log.stem}-{RECOVERED}.mcap")
+
+
+def refuse_log(target: Path, what: str) -> None:
+    """Raises BadInput where ``what`` is to be written over a log."""
+    if target.suffix == ".mcap":
+        raise BadInput(f"--out {target}: {what} is no log; give it another ending")

@@ -52,6 +52,12 @@ def opened_log(path: Path) -> Iterator[IO[bytes]]:
         raise BadInput(f"log {path}: still being written, cut off or broken; 'uvf log recover {path}' copies what is whole") from error
 
 
+def is_log(path: Path) -> bool:
+    """Whether a file begins as a log does, whole or not. Raises OSError."""
+    with path.open("rb") as file:
+        return file.read(len(MCAP0_MAGIC)) == MCAP0_MAGIC
+
+
 def _check_kind(path: Path, file: IO[bytes]) -> None:
     start = file.read(len(MCAP0_MAGIC))
     if not start:

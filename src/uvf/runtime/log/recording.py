@@ -151,7 +151,7 @@ class Recorder:
 
     def _end(self, error: OSError) -> None:
         """What came since the last flush may be lost with the file and counts as missed."""
-        self.error = f"log {self.path}: {error.strerror}: recording ends here with {self.written} messages"
+        self.error = f"log {self.path}: {error.strerror}: recording ends here, after {self.written} messages; the last may be missing"
         for key, count in self._unsaved.items():
             self._counter.gaps[key] += count
 
