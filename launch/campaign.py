@@ -23,17 +23,15 @@ class SeedRun:
     """One run of a campaign. log: kept where it did not pass."""
 
     seed: int
+    passed: bool
     verdicts: list[Verdict]
     failures: list[str]
+    undone: list[str]
+    """A line for each task that was not done."""
     simulated: float  # s
     wall: float  # s
     log_hash: str
     log: Path | None
-
-    @property
-    def passed(self) -> bool:
-        """Whether every criterion holds and no instance has failed."""
-        return not self.failures and all(v.passed for v in self.verdicts)
 
     @property
     def complaints(self) -> Iterator[str]:
@@ -42,7 +40,7 @@ class SeedRun:
             if not verdict.passed:
                 what = f"{verdict.subject} {verdict.criterion.measure} {verdict.found.value:.3g}"
                 yield f"seed {self.seed}: {what}; {verdict.found.circumstances or 'at the end'}; log {self.log}"
-        yield from (f"seed {self.seed}: {failure}; log {self.log}" for failure in self.failures)
+        yield from (f"seed {self.seed}: {line}; log {self.log}" for line in (*self.failures, *([] if self.passed else self.undone)))
 
 
 def run_seeds(mission: Path, count: int, until: float | None, folder: Path) -> Iterator[SeedRun]:
@@ -65,7 +63,9 @@ def run_seed(mission: Path, seed: int, until: float | None, folder: Path) -> See
     if result.passed:
         shutil.rmtree(folder)
     kept = None if result.passed else log
-    return SeedRun(seed, result.verdicts, result.failures, result.simulated, result.wall, result.log_hash, kept)
+    return SeedRun(
+        seed, result.passed, result.verdicts, result.failures, result.undone, result.simulated, result.wall, result.log_hash, kept
+    )
 
 
 def success_interval(passed: int, count: int) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from launch.attachments import attachments
 from launch.checks import refuse_problems
 from launch.scoring.last_words import LastWords
 from launch.scoring.scores import Scorer, Verdict
+from schemas.messages import TaskStatus
 from uvf.models.scenario import Scenario
 from uvf.runtime.log.recording import Recorder
 from uvf.runtime.log.versions import versions
@@ -32,6 +33,9 @@ class Result:
     """Instances that have failed: what was measured of them says nothing."""
     told: LastWords
     """What the vehicles said of themselves."""
+    tasks_done: bool
+    undone: list[str]
+    """A line for each task that was not done."""
 
     @property
     def factor(self) -> float:
@@ -40,8 +44,8 @@ class Result:
 
     @property
     def passed(self) -> bool:
-        """Whether every criterion holds and no instance has failed."""
-        return not self.failures and all(v.passed for v in self.verdicts)
+        """Whether every criterion holds, or, without any, all tasks are done; and no instance has failed."""
+        return not self.failures and (all(v.passed for v in self.verdicts) if self.verdicts else self.tasks_done)
 
 
 def run_lockstep(
@@ -78,5 +82,14 @@ def run_lockstep(
         finally:
             lockstep.close()
     return Result(
-        scorer.judge(), recorder.hash.hexdigest(), min(reached, until), wall, recorder.written, recorder.error, lockstep.failures(), told
+        scorer.judge(),
+        recorder.hash.hexdigest(),
+        min(reached, until),
+        wall,
+        recorder.written,
+        recorder.error,
+        lockstep.failures(),
+        told,
+        not site.mission.tasks or scorer.tasks.state == TaskStatus.DONE,
+        list(scorer.tasks.undone),
     )

@@ -11,7 +11,7 @@ from rich.table import Column, Table
 from launch.commands.run import criteria_table, shown
 from launch.reports.comparison import criteria_rows, labels_of, write_comparison
 from launch.reports.curves import draw_curves
-from launch.reports.recorded_run import recorded_run
+from launch.reports.recorded_run import RecordedRun, recorded_run
 from launch.reports.report import vehicle_figures, write_report
 from uvf.runtime.log.folder import run_folder
 from uvf.runtime.messages.validation import escaped
@@ -24,8 +24,7 @@ def report_run(path: Path, out: Path | None) -> None:
     with recorded_run(path) as run:
         written = write_report(run, out or run_folder(path) / REPORT)
         console = Console()
-        if run.note:
-            typer.echo(f"uvf: {escaped(run.note)}", err=True)
+        _warn(run)
         for name, history in run.vehicles.items():
             made = Table("flight of" if history.is_aircraft else "drive of", escaped(name))
             for figure in vehicle_figures(history):
@@ -41,6 +40,8 @@ def compare_runs(paths: Sequence[Path], out: Path | None) -> None:
     """Writes the comparison of runs into ``out`` or beside the first one's logs, and prints their criteria. Raises BadInput."""
     with ExitStack() as stack:
         runs = [stack.enter_context(recorded_run(path)) for path in paths]
+        for run in runs:
+            _warn(run)
         page = write_comparison(runs, out or run_folder(paths[0]) / COMPARISON)
         table = Table(*(Column(name, overflow="fold") for name in ("subject", "measure", "limit", *map(shown, labels_of(runs)))))
         for row in criteria_rows(runs):
@@ -48,6 +49,13 @@ def compare_runs(paths: Sequence[Path], out: Path | None) -> None:
         if table.row_count:
             Console().print(table)
         typer.echo(str(page))
+
+
+def _warn(run: RecordedRun) -> None:
+    """What speaks against taking its figures for those of the mission."""
+    for line in (run.note, run.stopped_at and f"{run.path}: {run.stopped_at}", *run.failures):
+        if line:
+            typer.echo(f"uvf: {escaped(line)}", err=True)
 
 
 def plot_fields(run: Path, fields: Sequence[str], out: Path | None) -> None:

@@ -57,7 +57,11 @@ def _run(base: Path, changes: list[str], until: float, log: Path) -> int:
                 advance(t)
             return True
 
-        result = run_lockstep(site, until, log, watch, lambda line: bar.console.print(line, markup=False))
+        try:
+            result = run_lockstep(site, until, log, watch, lambda line: bar.console.print(line, markup=False))
+        except KeyboardInterrupt:
+            typer.echo(f"stopped; what was recorded until then is in {log}", err=True)
+            raise
     _print_result(result, log)
     return 0 if result.passed and not result.recording_error else 1
 
@@ -122,7 +126,7 @@ def criteria_table(verdicts: Sequence[Verdict]) -> Table:
 def _print_result(result: Result, log: Path) -> None:
     if result.verdicts:
         console.print(criteria_table(result.verdicts))
-    for line in why(result.verdicts, result.told):
+    for line in (*result.undone, *why(result.verdicts, result.told)):
         typer.echo(escaped(line))
     typer.echo(f"simulated {result.simulated:g} s in {result.wall:.1f} s: {result.factor:.1f} x real time")
     typer.echo(f"log {log}: {result.messages} messages, hash {result.log_hash}")

@@ -73,9 +73,8 @@ def _sections(runs: dict[str, RecordedRun], target: Path) -> Iterator[tuple[str,
 
 
 def _of_run(label: str, run: RecordedRun) -> tuple[object, ...]:
-    verdict = "" if not run.verdicts else "passed" if run.passed else "FAILED"
     seed = run.site.mission.seed if run.site is not None else ""
-    return label, run.title, str(seed), f"{run.end:.1f} s", verdict, ", ".join(run.vehicles)
+    return label, run.title, str(seed), run.stopped_at or f"{run.end:.1f} s", run.verdict, ", ".join(run.vehicles)
 
 
 def _differences(runs: dict[str, RecordedRun]) -> Iterator[str]:

@@ -18,12 +18,16 @@ from uvf.models.scenario import Scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.wire import Malformed, decode_sample
+from uvf.runtime.contract.bulkhead import GIVEN_UP, STARTED_AFRESH
 from uvf.runtime.log.folder import logs_of
 from uvf.runtime.log.reading import log_metadata
 from uvf.runtime.log.replay import logged_site
 from uvf.runtime.log.run_samples import run_samples
 from uvf.runtime.messages.step_times import NS
 from uvf.runtime.messages.topic_lookup import topic_of
+
+PASSED, FAILED = "passed", "FAILED"
+ENDING = 1.0  # s before the mission's duration, within which a run is over
 
 
 @dataclass(frozen=True)
@@ -54,12 +58,27 @@ class RecordedRun:
     traffic: Traffic = field(default_factory=Traffic)
     told: LastWords = field(default_factory=LastWords)
     verdicts: list[Verdict] = field(default_factory=list)
+    tasks_ended: bool = False
     end: float = 0.0  # s
 
     @property
-    def passed(self) -> bool:
-        """Whether every criterion holds."""
-        return all(verdict.passed for verdict in self.verdicts)
+    def failures(self) -> list[str]:
+        """What was told of services that have failed, whose figures say nothing."""
+        return [each.event.text for each in self.events if STARTED_AFRESH in each.event.text or GIVEN_UP in each.event.text]
+
+    @property
+    def stopped_at(self) -> str:
+        """When it was stopped before its end; empty where it was not."""
+        if self.site is None or self.tasks_ended or self.end >= self.site.mission.duration - ENDING:
+            return ""
+        return f"stopped at {self.end:.1f} s of {self.site.mission.duration:g} s"
+
+    @property
+    def verdict(self) -> str:
+        """``passed`` where every criterion holds and no service has failed, so far where it was stopped; empty without criteria."""
+        if self.failures or not all(verdict.passed for verdict in self.verdicts):
+            return FAILED
+        return "" if not self.verdicts else f"{PASSED} so far" if self.stopped_at else PASSED
 
     @property
     def title(self) -> str:
@@ -80,7 +99,9 @@ class RecordedRun:
             if name in _TOLD or name.startswith("state/events/"):
                 self.told.heard(sample)
         elif sample.key == topics.TASKS.at(SYSTEM):
-            self.tasks = list(decode_sample(sample, Tasks).tasks)
+            told = decode_sample(sample, Tasks)
+            self.tasks = list(told.tasks)
+            self.tasks_ended = told.state != TaskStatus.RUNNING
             for i, task in enumerate(self.tasks):
                 if task.state == TaskStatus.RUNNING:
                     self.begun.setdefault(i, task.since)

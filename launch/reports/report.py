@@ -50,17 +50,17 @@ def write_report(run: RecordedRun, target: Path) -> list[Path]:
 
 
 def _head(run: RecordedRun) -> str:
-    verdict = "" if not run.verdicts else '<span class="passed">passed</span>' if run.passed else '<span class="FAILED">FAILED</span>'
+    verdict = f'<span class="{run.verdict.split()[0]}">{run.verdict}</span>' if run.verdict else ""
     about = run.site.mission.about if run.site is not None else run.note
-    facts = [f"{run.end:.1f} s", f"{len(run.vehicles)} vehicles", str(run.path.resolve())]
+    facts = [run.stopped_at or f"{run.end:.1f} s", f"{len(run.vehicles)} vehicles", str(run.path.resolve())]
     if run.site is not None:
         facts[:0] = [f"world {run.site.mission.world}", f"seed {run.site.mission.seed}"]
     return f'<h1>{html.text(run.title)} {verdict}</h1><p>{html.text(about)}</p><p class="about">{html.text(" · ".join(facts))}</p>'
 
 
 def _sections(run: RecordedRun, maps: list[ReportedMap], target: Path) -> Iterator[tuple[str, str]]:
-    if run.verdicts:
-        yield "Criteria", _criteria(run) + html.paragraphs(why(run.verdicts, run.told))
+    if run.verdicts or run.failures:
+        yield "Criteria", _criteria(run) + html.paragraphs((*run.failures, *why(run.verdicts, run.told)))
     yield "Ways", html.picture(target / TEAM, "the ways of all vehicles over the world") + html.folded("Tasks as a table", _tasks(run))
     for name, history in run.vehicles.items():
         rows = [(figure.name, figure.value) for figure in vehicle_figures(history)]

@@ -1,11 +1,13 @@
 """Measures of tasks: whether and when each was done."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf
 
 from launch.scoring.finding import Finding
 from schemas.messages import Tasks, TaskStatus
+from uvf.models.mission.tasks import COMPOSITES
+from uvf.runtime.messages.enum_names import enum_name
 
 
 @dataclass
@@ -35,14 +37,25 @@ class RecordedTasks:
     state: int = TaskStatus.RUNNING
     """Of all together."""
     ended: float | None = None
+    last: Sequence[TaskStatus] = ()
+    """What was told of each of them at last, each before its parts."""
 
     def heard(self, t: float, message: Tasks) -> None:
         """Stores what is told at ``t`` [s]."""
+        self.last = message.tasks
         for told in message.tasks:
             if told.name in self.tasks:
                 self.tasks[told.name].heard(told)
         if message.state != TaskStatus.RUNNING and self.ended is None:
             self.state, self.ended = message.state, t
+
+    @property
+    def undone(self) -> Iterator[str]:
+        """Of each single task that was not done, a line that says why not."""
+        for told in self.last if self.state != TaskStatus.DONE else ():
+            if told.kind not in COMPOSITES and told.state in (TaskStatus.WAITING, TaskStatus.RUNNING, TaskStatus.FAILED):
+                state = "not begun" if told.state == TaskStatus.WAITING else enum_name(TaskStatus.State, told.state)
+                yield f"task {told.name}: {state}" + (f": {told.reason}" if told.reason else "")
 
 
 def done(task: RecordedTask) -> Finding:
@@ -66,7 +79,9 @@ def time_taken(task: RecordedTask) -> Finding:
 def _note(task: RecordedTask) -> str:
     if task.state == TaskStatus.DONE:
         return ""
-    return "not begun" if task.begun is None else task.reason or TaskStatus.State.Name(task.state).lower()
+    if task.begun is None:
+        return f"not begun: {task.reason}" if task.reason else "not begun"
+    return task.reason or TaskStatus.State.Name(task.state).lower()
 
 
 TASK_MEASURES: dict[str, Callable[[RecordedTask], Finding]] = {f.__name__: f for f in (done, time_taken)}

@@ -40,9 +40,9 @@ class PendingRequests:
 
     _open: list[PendingRequest] = field(default_factory=list)
 
-    def ask(self, name: str, vehicle: str, message: Message, patience: float = PATIENCE) -> PendingRequest:
-        """A new request; it goes out with this step."""
-        ticket = PendingRequest(name, vehicle, message, patience)
+    def ask(self, name: str, vehicle: str, message: Message, patience: float = PATIENCE, due: float = 0.0) -> PendingRequest:
+        """A new request; it goes out with this step, or at ``due`` [s]."""
+        ticket = PendingRequest(name, vehicle, message, patience, due=due)
         self._open.append(ticket)
         return ticket
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from schemas import topics
 from schemas.messages import FrameTransform, Grid, MapReply, MapRequest, Reply, SaveMapRequest
 from uvf.maths.se2 import compose
+from uvf.models.names import MAP
 from uvf.models.world.map_file import GridMap
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.contract.declaration import Reads, Writes, optional, replies, request, topic
@@ -16,7 +17,6 @@ from uvf.runtime.messages.maps.grids import as_map, as_message
 
 Save = Callable[[GridMap, str, str], Path]
 """Writes a map under a name, in a mode of map_server. Raises BadInput."""
-NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,79}")
 DRAWN = "grid"
 
 
@@ -66,7 +66,7 @@ class MapServer(Service):
         if layer not in layers:
             return Reply(reason=f"no layer '{layer}' is saved; {nearest(layer, layers)}")
         map, placing = layers[layer], now.placing
-        if not NAME.fullmatch(request.name):
+        if not re.fullmatch(MAP, request.name):
             return Reply(reason=f"a map cannot be called '{request.name}'; use letters, digits, - and _")
         if map is None or placing is None:
             wait = "wait for the first scan" if layer == DRAWN else "the first vehicle of a team has it, once two maps fit together"

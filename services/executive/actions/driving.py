@@ -1,7 +1,7 @@
 """Places that vehicles go to: goals, routes, and vehicles that they follow."""
 
 from collections.abc import Sequence
-from math import nan
+from math import hypot, nan
 
 from schemas.messages import CancelRequest, FollowRequest, GoalRequest, NavStatus, RouteRequest, Vector3
 from services.executive.actions.action import EngagedAction, Failed, RequestAction
@@ -14,6 +14,8 @@ Point = tuple[float, float]
 KINDS = {"waypoints": RouteRequest.WAYPOINTS, "through": RouteRequest.THROUGH, "patrol": RouteRequest.PATROL}
 SAME = 0.05  # m, that a goal may differ by and still be the same
 TAKEN_WITHIN = 3.0  # s, after which a planner that has accepted a goal says so in its status
+SAME_HEIGHT = 1.0  # m, likewise
+LEVEL = 8.0  # m beside its height, within which an aircraft is at its goal
 CIRCLING = 1.5  # radii of the circle that an aircraft holds on, within which it is at its goal
 
 
@@ -143,14 +145,19 @@ class FlyToAction(RequestAction):
         self._is_taken = False
 
     def step(self, now: TeamSituation) -> bool:
-        """Whether it circles there. Raises Failed when the goal is refused, or the aircraft does something else."""
+        """Whether it circles there, at its height. Raises Failed when the goal is refused, or too low for it."""
         if not self._is_taken:
             x, y, z = self._place
             message = GoalRequest(position=Vector3(x=x, y=y, z=z), yaw=nan, source=SOURCE)
             self._is_taken = self._accepted(now, self._ticket or now.desk.ask("goal", self.vehicle, message))
             return False
-        status, distance = now.now.status.get(self.vehicle), now.distance(self.vehicle, self._place[:2])
-        if status is None or distance is None:
+        status, here = now.now.status.get(self.vehicle), now.place(self.vehicle)
+        if status is None or here is None or not status.HasField("circle"):
             return False
-        self.reason = f"{distance:.0f} m left"
-        return status.HasField("circle") and distance <= CIRCLING * abs(status.circle.radius)
+        x, y, z = self._place
+        circle = status.circle
+        if abs(circle.centre.z - z) > SAME_HEIGHT and hypot(circle.centre.x - x, circle.centre.y - y) <= SAME_HEIGHT:
+            raise Failed(f"{self.vehicle}: {z:g} m is too low for it; it holds at {circle.centre.z:.0f} m")
+        distance, climb = hypot(here[0] - x, here[1] - y), z - here[2]
+        self.reason = f"{distance:.0f} m left, {abs(climb):.0f} m to {'climb' if climb > 0 else 'descend'}"
+        return distance <= CIRCLING * abs(circle.radius) and abs(climb) <= LEVEL

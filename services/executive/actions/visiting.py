@@ -8,7 +8,7 @@ import numpy as np
 from schemas.messages import PreviewRequest, Vector3
 from services.executive.actions.action import Failed
 from services.executive.actions.driving import RouteAction
-from services.executive.asking import PendingRequest
+from services.executive.asking import AGAIN, PATIENCE, PendingRequest
 from services.executive.interface import SOURCE
 from services.executive.situation import TeamSituation
 from uvf.planning.assignment import assign
@@ -23,12 +23,13 @@ class VisitAction:
     def __init__(self, vehicles: Sequence[str], places: Sequence[Point]) -> None:
         self._vehicles, self._places = vehicles, places
         self._tickets: dict[tuple[str, Start, Point], PendingRequest] = {}
+        self._begun = 0.0
         self._routes: list[RouteAction] | None = None
         self.reason = ""
 
     def begin(self, now: TeamSituation) -> None:
         """Begins with asking for all ways."""
-        self._routes, self.reason = None, "asks how long the ways are"
+        self._routes, self.reason, self._begun = None, "asks how long the ways are", now.t
         starts: tuple[Start, ...] = (None, *self._places)
         self._tickets = {
             (vehicle, start, goal): now.desk.ask("preview", vehicle, preview_request(start, goal), patience=0.0)
@@ -43,9 +44,11 @@ class VisitAction:
         if self._routes is None:
             if not all(ticket.accepted or ticket.refused for ticket in self._tickets.values()):
                 return False
-            self._routes = self._shared_out()
-            for route in self._routes:
+            self._routes = self._shared_out(now)
+            for route in self._routes or ():
                 route.begin(now)
+            if self._routes is None:
+                return False
         done = [route for route in self._routes if route.step(now)]
         self._routes = [route for route in self._routes if route not in done]
         self.reason = "; ".join(f"{route.vehicle}: {route.reason}" for route in self._routes)
@@ -58,15 +61,22 @@ class VisitAction:
         for route in self._routes or ():
             route.stop(now)
 
-    def _shared_out(self) -> list[RouteAction]:
+    def _shared_out(self, now: TeamSituation) -> list[RouteAction] | None:
+        """None where nobody can go somewhere yet: at first a rover has no map. Raises Failed where that stays so."""
         to_goals = np.array([[self._time(vehicle, None, goal) for goal in self._places] for vehicle in self._vehicles])
         between = np.array(
             [[[self._time(vehicle, start, goal) for goal in self._places] for start in self._places] for vehicle in self._vehicles]
         )
         found = assign(to_goals, between)
         if found.unreachable:
-            x, y = self._places[found.unreachable[0]]
-            raise Failed(f"nobody can go to ({x:g}, {y:g})")
+            goal = self._places[found.unreachable[0]]
+            refused = [(key, ticket) for key, ticket in self._tickets.items() if ticket.refused]
+            if now.t - self._begun >= PATIENCE:
+                why = "; ".join(f"{vehicle}: {ticket.reason}" for (vehicle, start, to), ticket in refused if start is None and to == goal)
+                raise Failed(f"nobody can go to ({goal[0]:g}, {goal[1]:g}): {why}")
+            for key, ticket in refused:
+                self._tickets[key] = now.desk.ask("preview", ticket.vehicle, ticket.message, patience=0.0, due=now.t + AGAIN)
+            return None
         tours = zip(self._vehicles, found.tours, strict=True)
         return [RouteAction(vehicle, [self._places[goal] for goal in tour], "waypoints") for vehicle, tour in tours if tour]
 

@@ -3,7 +3,7 @@
 import hashlib
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -15,7 +15,7 @@ from uvf.models.mission.extending import merge
 from uvf.models.mission.faults import check_parts
 from uvf.models.mission.file import MissionFile, Vehicle, load_mission
 from uvf.models.mission.fixtures import furnished
-from uvf.models.mission.task_check import check_batteries, check_drivers, check_finders, check_shares
+from uvf.models.mission.task_needs import check_batteries, check_drivers, check_explorers, check_finders, check_heights, check_shares
 from uvf.models.params import Params
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.world.file import WorldFile, load_world
@@ -124,8 +124,23 @@ def load_scenario(mission: str | Path, root: str | Path = ROOT) -> Scenario:
     check_starts(site)
     kinds = {name: file.kind for name, file in files.items()}
     check_parts(data.faults, kinds, place.at("faults"))
+    _check_jobs(data.vehicles, kinds, place.at("vehicles"))
     check_drivers(data.tasks, data.roles, kinds, place)
+    check_explorers(data.tasks, data.roles, {name for name, entry in data.vehicles.items() if entry.job.explore}, place)
+    check_heights(data.tasks, data.roles, kinds, place)
     check_batteries(data.tasks, data.roles, {name for name, file in files.items() if not file.has_battery}, place)
     check_shares(data.tasks, data.roles, kinds, place)
     check_finders(data.tasks, data.roles, {name for name, member in members.items() if DETECTOR in member.file.params}, place)
     return site
+
+
+def _check_jobs(vehicles: Mapping[str, Vehicle], kinds: Mapping[str, str], place: FileLocation) -> None:
+    """Checks that aircraft have jobs that they can do."""
+    for name, entry in vehicles.items():
+        if kinds[name] == "ground":
+            continue
+        if entry.job.explore:
+            raise BadInput(f"{place.at(name, 'job', 'explore')}: {name} flies; only ground vehicles explore")
+        for i, item in enumerate(entry.job.mission):
+            if item.kind in ("waypoint", "orbit", "takeoff") and item.z <= 0.0:
+                raise BadInput(f"{place.at(name, 'job', 'mission', i, 'z')}: {name} flies; give the height above the world's origin")

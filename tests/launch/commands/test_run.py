@@ -87,3 +87,45 @@ def test_a_recovered_log_stands_for_the_broken_one_and_a_part_is_no_second_log(t
     again = uvf("log", "export", str(tmp_path), "anne/nav/odometry")
     assert again.returncode == 0
     assert 0 < int(again.stdout.split()[0]) <= int(exported.split()[0])
+
+
+def test_without_criteria_the_tasks_decide_and_what_was_not_done_is_told(tmp_path, mission):
+    begin, _ = MISSION.split("criteria:")
+    mission.write_text(begin + "tasks:\n  - {name: late, when: {at: 99}, arm: anne}\n")
+    said = run(mission, runs=tmp_path)
+    assert said.returncode == 1
+    assert "task late: not begun: waits until it is 99 s" in said.stdout
+    mission.write_text(begin + "tasks:\n  - {name: soon, when: {at: 0.2}}\n")
+    assert run(mission, runs=tmp_path).returncode == 0
+
+
+PROGRAM = """from uvf.runtime.contract.program import Program
+
+
+class Broken(Program):
+    name = "broken"
+    hz = 10.0
+
+    def step(self, t, now):
+        raise ValueError("no good")
+"""
+
+
+def test_a_run_whose_program_fails_has_failed_in_its_report_too(tmp_path, mission):
+    (tmp_path / "broken.py").write_text(PROGRAM)
+    mission.write_text(MISSION.replace("yaw: 0.5}", "yaw: 0.5}, program: broken.py"))
+    said = run(mission, runs=tmp_path / "runs")
+    assert said.returncode == 1 and "broken of anne failed" in said.stderr
+    latest = tmp_path / "runs" / "latest"
+    for tool in (("report", str(latest)), ("compare", str(latest), str(latest))):
+        assert "broken of anne has failed" in uvf(*tool, "--out", str(tmp_path / "out")).stderr
+    assert '<span class="FAILED">FAILED</span>' in (tmp_path / "out" / "report.html").read_text()
+
+
+def test_a_run_that_was_stopped_is_not_taken_for_a_whole_one(tmp_path, mission):
+    mission.write_text(MISSION.replace("duration: 0.3", "duration: 30"))
+    assert run(mission, "--until", "0.5", "--log", tmp_path / "log-000.mcap", runs=tmp_path).returncode == 0
+    said = uvf("report", str(tmp_path), "--out", str(tmp_path / "out"))
+    assert f"uvf: {tmp_path}: stopped at 0.5 s of 30 s" in said.stderr
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert '<span class="passed">passed so far</span>' in page and "stopped at 0.5 s of 30 s" in page

@@ -2,7 +2,7 @@
 
 import pytest
 
-from uvf.models.mission.task_check import check_shares
+from uvf.models.mission.task_needs import check_shares
 from uvf.models.mission.tasks import ShareMapTask, Task
 from uvf.models.yaml_data import BadInput, FileLocation
 

@@ -68,11 +68,36 @@ def test_roles_and_names_stand_for_vehicles_each_once():
         ("  - {drive: {vehicle: anne, track: tracks/no.csv}}", "drive: track: there is no file"),
         ("  - {mode: {vehicle: anne, mode: misson}}", "no 'misson' here; did you mean 'mission'?"),
         ("  - " + "{sequence: [" * DEEPEST + "{arm: anne}" + "]}" * DEEPEST, f"nested more than {DEEPEST} deep"),
+        ("  - {share_map: {vehicle: team, to: bert, layer: grid}}", "share_map: vehicle: 'team' is a role; name one vehicle, as 'anne'"),
+        ("  - {follow: {vehicle: bert, leader: team}, until: {at: 9}}", "follow: leader: 'team' is a role"),
+        ("  - {when: {vehicle: anne, near: {vehicle: team, within: 1}}}", "near: vehicle: 'team' is a role"),
+        ("  - {follow: {vehicle: team, leader: anne}, until: {at: 9}}", "follow: leader: anne would follow itself"),
+        ("  - {name: '  ', arm: anne}", "a task's name is blank"),
+        (f"  - {{name: {'a' * 101}, arm: anne}}", "tasks[0]: name: "),
+        ("  - {save_map: {vehicle: anne, name: ../x}}", "a map has letters, digits, - and _"),
+        ("  - {name: a, when: {task: a}}", "tasks[0]: when: it would wait for ever: it is 'a' itself"),
+        ("  - {name: a, when: {failed: b}, sequence: [{name: b, arm: anne}]}", "wait for ever: 'b' is a part of it"),
+        ("  - {name: a, parallel: [{when: {task: a}, arm: anne}]}", "parallel[0]: when: it would wait for ever: it is a part of 'a'"),
+        ("  - {when: {task: b}, arm: anne}\n  - {name: b, arm: bert}", "wait for ever: 'b' begins after it; do both in a parallel"),
+        (
+            "  - {fallback: [{parallel: [{when: {task: c}}]}, {parallel: [{name: c, arm: anne}]}]}",
+            "fallback[0]: parallel[0]: when: it would wait for ever: 'c' begins after it",
+        ),
         ("  - {arm: anne}\n" * (MOST_TASKS + 1), f"{MOST_TASKS + 1} tasks; {MOST_TASKS} are possible"),
     ],
 )
 def test_what_is_wrong_is_said_in_one_line_with_its_place(tmp_path, tasks, why):
     assert why in refusal(tmp_path, tasks)
+
+
+def test_tasks_wait_for_what_is_done_beside_or_before_them(tmp_path):
+    tree = """  - {name: a, arm: anne}
+  - parallel:
+      - {when: {task: c}, arm: anne}
+      - {sequence: [{name: b, when: {task: a}, arm: bert}, {name: c, when: {task: b}, disarm: bert}]}
+  - {when: {failed: b}, arm: anne}
+"""
+    assert len(list(walk(load(tmp_path, tree).tasks))) == 7
 
 
 @pytest.mark.parametrize(

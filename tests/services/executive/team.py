@@ -53,6 +53,7 @@ class Team:
         self.asked, self.events, self.drives = [], [], []
         self.refusals: dict[tuple[str, str], str] = {}
         self.places = {"anne": (2.2, 1.3), "bert": (8.0, 4.4), "carl": (0.0, -200.0)}
+        self.heights = dict.fromkeys(self.places, 0.0)
         self.status = {name: VehicleStatus(mode=Mode.MODE_HOLD, battery_remaining=0.8) for name in self.places}
         self.nav: dict[str, NavStatus] = {}
         self.progress: dict[str, MissionProgress] = {}
@@ -68,7 +69,7 @@ class Team:
     def step(self, n: int = 1) -> None:
         for _ in range(n):
             self.t = round(self.t + DT, 6)
-            pose = {name: PoseInFrame(pose=planar_pose(x, y, 0.0)) for name, (x, y) in self.places.items()}
+            pose = {name: PoseInFrame(pose=planar_pose(x, y, 0.0, self.heights[name])) for name, (x, y) in self.places.items()}
             heard = {"pose": pose, "status": self.status, "nav": self.nav, "progress": self.progress, "detections": self.detections}
             now = Inputs(told=self.told, **heard, **self._answers)
             self.told, self._answers = {}, {}

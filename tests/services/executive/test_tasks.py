@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from schemas.messages import Grid, MissionProgress, Mode, NavStatus, TaskStatus
+from schemas.messages import Circle, Grid, MissionProgress, Mode, NavStatus, TaskStatus, Vector3
 from services.executive.actions.joystick import DriveTrack
 from services.executive.asking import PATIENCE
 from tests.services.executive.team import Team
@@ -284,3 +284,70 @@ def test_a_map_that_nobody_has_fails_the_task_with_the_reason(tmp_path):
 def test_a_hand_over_that_cannot_be_is_told_at_the_start(tmp_path, part, why):
     with pytest.raises(BadInput, match=re.escape(why)):
         Team(SHARE.replace("to: team, area: [0.0, 0.0, 10.0, 5.0]", part), tmp_path)
+
+
+PLACES = "  - {name: see, visit: {vehicle: team, places: [[4.0, 1.7], [5.0, 1.7]]}}\n"
+
+
+def test_ways_are_asked_for_again_while_a_rover_has_no_map_yet(tmp_path):
+    team = Team(PLACES, tmp_path)
+    team.refusals.update({("preview", name): "there is no map yet" for name in ("anne", "bert")})
+    team.step(40)
+    assert team.states() == ["RUNNING"]
+    asked = team.requests().count("preview anne")
+    assert 12 <= asked <= 30
+    team.refusals.clear()
+    team.step(15)
+    assert {name for name, _, _ in team.asked} >= {"route"}
+
+
+def test_a_place_that_nobody_can_go_to_fails_with_what_the_planners_say(tmp_path):
+    team = Team(PLACES, tmp_path)
+    team.refusals.update({("preview", name): f"{name} sees a wall" for name in ("anne", "bert")})
+    team.step(round(PATIENCE * 10) + 30)
+    assert team.states() == ["FAILED"]
+    assert team.tasks.tasks[0].reason == "nobody can go to (4, 1.7): anne: anne sees a wall; bert: bert sees a wall"
+
+
+def circling(team, x, y, z, height):
+    team.status["carl"].circle.CopyFrom(Circle(centre=Vector3(x=x, y=y, z=z), radius=80.0))
+    team.places["carl"], team.heights["carl"] = (x + 80.0, y), height
+
+
+def test_an_aircraft_is_at_its_goal_at_its_height(tmp_path):
+    team = Team("  - {name: up, goal: {vehicle: carl, x: 100.0, y: 0.0, z: 200.0}}\n", tmp_path)
+    team.step(10)
+    circling(team, 0.0, -200.0, 60.0, 60.0)
+    team.step(2)
+    assert team.states() == ["RUNNING"]
+    circling(team, 100.0, 0.0, 200.0, 60.0)
+    team.step(12)
+    assert (team.states(), team.tasks.tasks[0].reason) == (["RUNNING"], "80 m left, 140 m to climb")
+    circling(team, 100.0, 0.0, 200.0, 195.0)
+    team.step(2)
+    assert team.states() == ["DONE"]
+
+
+def test_a_goal_that_is_too_low_for_an_aircraft_fails_with_the_height_it_holds(tmp_path):
+    team = Team("  - {name: low, goal: {vehicle: carl, x: 100.0, y: 0.0, z: 3.0}}\n", tmp_path)
+    team.step(10)
+    circling(team, 100.0, 0.0, 60.0, 60.0)
+    team.step(2)
+    assert (team.states(), team.tasks.tasks[0].reason) == (["FAILED"], "carl: 3 m is too low for it; it holds at 60 m")
+
+
+@pytest.mark.parametrize(
+    ("tasks", "why"),
+    [
+        ("  - {route: {vehicle: carl, places: [[1, 2]]}}", "route: vehicle: carl does not drive; name ground vehicles"),
+        ("  - {explore: [anne, carl]}", "explore: carl does not drive"),
+        ("  - {explore: bert}", "explore: bert has another job; give it job: {explore: true}"),
+        ("  - {follow: {vehicle: carl, leader: anne}, until: {at: 9}}", "follow: vehicle: carl does not drive"),
+        ("  - {save_map: {vehicle: carl, name: x}}", "save_map: vehicle: carl does not drive"),
+        ("  - {goal: {vehicle: [bert, carl], x: 1, y: 2}}", "goal: z: carl flies; give the height above the world's origin"),
+    ],
+)
+def test_who_cannot_do_a_task_is_not_asked(tmp_path, tasks, why):
+    with pytest.raises(BadInput) as error:
+        Team(tasks, tmp_path)
+    assert why in str(error.value)

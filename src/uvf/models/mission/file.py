@@ -12,7 +12,8 @@ from uvf.models.mission.faults import Fault, check_faults
 from uvf.models.mission.fence import FenceFile, zones_of
 from uvf.models.mission.fixtures import ChargerFile, MarkerFile
 from uvf.models.mission.formation import Follow, check_follow
-from uvf.models.mission.task_check import check_charging, check_tasks
+from uvf.models.mission.task_check import check_tasks
+from uvf.models.mission.task_needs import check_charging
 from uvf.models.mission.tasks import Task, walk
 from uvf.models.names import FOLDER, SYSTEM, VEHICLE
 from uvf.models.world.wind import Wind, check_wind

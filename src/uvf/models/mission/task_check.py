@@ -1,8 +1,9 @@
-"""Whether the tasks of a mission can be done by its vehicles: who, what, and in files that are there."""
+"""Whether the tasks of a mission say what is to be done, by whom of its vehicles, and when."""
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from uvf.models.mission.task_order import check_waits
 from uvf.models.mission.tasks import COMPOSITES, DEEPEST, MOST_TASKS, VERBS, Task, TaskCondition, Who, parts_of, verb_of, walk
 from uvf.models.yaml_data import BadInput, FileLocation, nearest
 
@@ -32,26 +33,35 @@ def check_tasks(tasks: list[Task], roles: Roles, vehicles: Mapping[str, object],
         raise BadInput(f"{file.at('tasks')}: {len(every)} tasks; {MOST_TASKS} are possible")
     _check_names(every, file)
     known = {task.name for task in every if task.name}
-    for task, place in _placed(tasks, file.at("tasks")):
+    for task, place in placed_tasks(tasks, file.at("tasks")):
         _check_task(task, place, folder)
         for who, where in _named(task, place):
             _check_who(who, roles, vehicles, where)
+        for name, where in _alone(task, place):
+            if name in roles:
+                raise BadInput(f"{where}: '{name}' is a role; name one vehicle, as '{roles[name][0]}'")
+        if task.follow is not None and task.follow.leader in members_of(task.follow.vehicle, roles):
+            raise BadInput(f"{place.at('follow', 'leader')}: {task.follow.leader} would follow itself; name another vehicle")
         for condition, where in ((task.when, place.at("when")), (task.until, place.at("until"))):
             if condition is not None:
                 _check_condition(condition, known, where)
+    check_waits(tasks, file.at("tasks"))
 
 
-def _placed(tasks: list[Task], place: FileLocation, depth: int = 1) -> Iterator[tuple[Task, FileLocation]]:
+def placed_tasks(tasks: list[Task], place: FileLocation, depth: int = 1) -> Iterator[tuple[Task, FileLocation]]:
+    """Every task of a tree, each before its parts, and where it stands. Raises BadInput."""
     if depth > DEEPEST:
         raise BadInput(f"{place}: tasks are nested more than {DEEPEST} deep; name parts of them one after the other")
     for i, task in enumerate(tasks):
         yield task, place.at(i)
-        yield from _placed(parts_of(task), place.at(i, verb_of(task)), depth + 1)
+        yield from placed_tasks(parts_of(task), place.at(i, verb_of(task)), depth + 1)
 
 
 def _check_names(every: list[Task], file: FileLocation) -> None:
     names = [task.name for task in every if task.name]
     for name in names:
+        if not name.strip():
+            raise BadInput(f"{file.at('tasks')}: a task's name is blank; leave it out or give it one")
         if names.count(name) > 1:
             raise BadInput(f"{file.at('tasks')}: two tasks are called '{name}'; rename one")
 
@@ -96,6 +106,17 @@ def _named(task: Task, place: FileLocation) -> Iterator[tuple[Who, FileLocation]
             yield condition.near.vehicle, place.at(name, "near", "vehicle")
 
 
+def _alone(task: Task, place: FileLocation) -> Iterator[tuple[str, FileLocation]]:
+    """Whom a task names where one vehicle is meant, with where."""
+    if task.share_map is not None:
+        yield task.share_map.vehicle, place.at("share_map", "vehicle")
+    if task.follow is not None:
+        yield task.follow.leader, place.at("follow", "leader")
+    for name, condition in (("when", task.when), ("until", task.until)):
+        if condition is not None and condition.near is not None:
+            yield condition.near.vehicle, place.at(name, "near", "vehicle")
+
+
 def _check_who(who: Who, roles: Roles, vehicles: Mapping[str, object], place: FileLocation) -> None:
     members = members_of(who, roles)
     if not members:
@@ -116,64 +137,3 @@ def _check_condition(condition: TaskCondition, known: set[str], place: FileLocat
     for name in (condition.task, condition.failed):
         if name is not None and name not in known:
             raise BadInput(f"{place}: no task is called '{name}'; {nearest(name, known)}")
-
-
-def check_charging(tasks: list[Task], chargers: int, file: FileLocation) -> None:
-    """Checks that there are chargers where a task needs one. Raises BadInput."""
-    for task, place in _placed(tasks, file.at("tasks")):
-        if task.charge is not None and chargers == 0:
-            raise BadInput(f"{place.at('charge')}: the mission has no chargers; set some up under 'chargers'")
-
-
-def check_batteries(tasks: list[Task], roles: Roles, without: Collection[str], file: FileLocation) -> None:
-    """Checks that who is to be charged, or whose charge is waited for, has a battery; without: vehicles that have none. Raises BadInput."""
-    for task, place in _placed(tasks, file.at("tasks")):
-        asked = [] if task.charge is None else [(task.charge.vehicle, place.at("charge", "vehicle"))]
-        for who, where in (*asked, *_conditions_on("charge_below", task, place)):
-            for vehicle in members_of(who, roles):
-                if vehicle in without:
-                    raise BadInput(f"{where}: {vehicle} has no battery; give its vehicle.yaml one")
-
-
-def check_finders(tasks: list[Task], roles: Roles, seeing: Collection[str], file: FileLocation) -> None:
-    """Checks that who is to find markers looks for them; seeing: vehicles with a detector. Raises BadInput."""
-    for task, place in _placed(tasks, file.at("tasks")):
-        asked = [] if task.visit is None or task.visit.found is None else [(task.visit.found.by, place.at("visit", "found", "by"))]
-        for who, where in (*asked, *_conditions_on("found", task, place)):
-            for vehicle in members_of(who, roles):
-                if vehicle not in seeing:
-                    raise BadInput(f"{where}: {vehicle} looks for no markers; give it params: {{detector: {{}}}}, and a camera")
-
-
-def _conditions_on(about: str, task: Task, place: FileLocation) -> Iterator[tuple[Who, FileLocation]]:
-    """Of whose vehicles the task's conditions ask that, and where they do."""
-    for name, condition in (("when", task.when), ("until", task.until)):
-        if condition is not None and condition.vehicle is not None and getattr(condition, about) is not None:
-            yield condition.vehicle, place.at(name, about)
-
-
-def check_drivers(tasks: list[Task], roles: Roles, kinds: Mapping[str, str], file: FileLocation) -> None:
-    """Checks that who is to be charged, or to visit markers, drives; kinds: of each vehicle. Raises BadInput."""
-    for task, place in _placed(tasks, file.at("tasks")):
-        does = task.charge if task.charge is not None else task.visit
-        if does is not None:
-            where = place.at("charge" if task.charge is not None else "visit", "vehicle")
-            for name in members_of(does.vehicle, roles):
-                if kinds[name] != "ground":
-                    raise BadInput(f"{where}: {name} does not drive; name ground vehicles")
-
-
-def check_shares(tasks: list[Task], roles: Roles, kinds: Mapping[str, str], file: FileLocation) -> None:
-    """Checks that maps which are handed over can be drawn and used; kinds: of each vehicle. Raises BadInput."""
-    for task, place in _placed(tasks, file.at("tasks")):
-        if (share := task.share_map) is None:
-            continue
-        here = place.at("share_map")
-        layer = "grid" if kinds[share.vehicle] == "ground" else "heights"
-        if share.layer != layer:
-            raise BadInput(f"{here.at('layer')}: {share.vehicle} has no {share.layer}; a {kinds[share.vehicle]} vehicle has its {layer}")
-        if share.area is not None and layer == "grid":
-            raise BadInput(f"{here.at('area')}: a grid is handed over as a whole; leave the area out")
-        for name in members_of(share.to, roles):
-            if kinds[name] != "ground":
-                raise BadInput(f"{here.at('to')}: {name} does not drive; only ground vehicles plan by such a map")

@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from uvf.models.keys import key, plain
+from uvf.models.keys import key, name_like, plain
+from uvf.models.names import MAP
 
 Metres = Annotated[float, Meta(ge=-1e6, le=1e6)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6)]
@@ -107,7 +108,7 @@ class SaveMapTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Save the map that a ground vehicle has drawn as pgm and yaml, as ``uvf map save`` does."""
 
     vehicle: Annotated[Who, plain("Ground vehicles or roles; of several, the vehicle's name is added to that of the map.")]
-    name: Annotated[str, plain("Name of the map.")]
+    name: Annotated[str, name_like(MAP, 80, "a map has letters, digits, - and _"), plain("Name of the map.")]
     layer: Annotated[
         Literal["grid", "team"], plain("`grid`: its own map. `team`: the merged one, which the first vehicle of a team has.")
     ] = "grid"
@@ -161,7 +162,9 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     A task of several tasks is one of ``sequence``, ``parallel`` and ``fallback``.
     """
 
-    name: Annotated[str, plain("Name in lists and on the page, for conditions and criteria. Left out: what it does.")] = ""
+    name: Annotated[
+        str, Meta(max_length=100), plain("Name in lists and on the page, for conditions and criteria. Left out: what it does.")
+    ] = ""
     when: Annotated[TaskCondition | None, plain("It begins once this holds. Left out: when its turn comes.")] = None
     until: Annotated[TaskCondition | None, plain("It is done as soon as this holds, however far it is.")] = None
     within: Annotated[Distance | None, key("s", "It has failed when it is not done within this time from its beginning.")] = None

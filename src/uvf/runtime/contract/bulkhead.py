@@ -11,6 +11,8 @@ from uvf.runtime.process.watchdog import StepHangs
 FAILURES = 3
 WINDOW = 30.0  # s: this many failures within it, and the instance is given up
 LONGEST = 300  # characters of a cause
+STARTED_AFRESH, GIVEN_UP = "has failed and was started afresh", "and is given up:"
+"""Words by which events tell that an instance has failed."""
 
 
 @dataclass

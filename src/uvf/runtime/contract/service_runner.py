@@ -12,7 +12,7 @@ from schemas.messages import Event, VehicleStatus
 from schemas.topics import PARAM, SYSTEM, Qos
 from uvf.runtime.bus.interface import Bus, Query, Sample
 from uvf.runtime.bus.wire import Malformed, decode
-from uvf.runtime.contract.bulkhead import FAILURES, WINDOW, Bulkhead
+from uvf.runtime.contract.bulkhead import FAILURES, GIVEN_UP, STARTED_AFRESH, WINDOW, Bulkhead
 from uvf.runtime.contract.declaration import Called, Frames, Input, StopInput, Writes, declared_in
 from uvf.runtime.contract.inbox import AHEAD_MOST, EVERY_DEPTH, InputBox
 from uvf.runtime.contract.instances import ServiceInstance
@@ -257,7 +257,7 @@ class ServiceRunner:
     def _tell_failure(self, t_ns: int, cause: str, given_up: str = "") -> None:
         """given_up: why, where it is."""
         name = f"{self.type.name} of {self.owner}"
-        text = f"{name} {given_up} and is given up: {self.type.given_up}" if given_up else f"{name} has failed and was started afresh"
+        text = f"{name} {given_up} {GIVEN_UP} {self.type.given_up}" if given_up else f"{name} {STARTED_AFRESH}"
         self._refuse_all(f"{name} has failed: {cause}")
         self._warn(f"{text}: {cause}")
         severity = Event.CRITICAL if given_up else Event.ERROR
