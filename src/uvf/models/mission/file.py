@@ -181,7 +181,7 @@ class MissionFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         list[Task],
         plain("What the vehicles do together, one task after the other. When the last one is done, or one has failed, `uvf run` ends."),
     ] = []
-    criteria: Annotated[list[Criterion], plain("Pass criteria; all must hold.")] = []
+    criteria: Annotated[list[Criterion], plain("Pass criteria; all must hold. Without any, all tasks must be done.")] = []
     wind: Annotated[Wind | None, plain("Replaces the whole wind of the world.")] = None
     faults: Annotated[list[Fault], plain("Sensors and servos that fail during the run.")] = []
 
