@@ -17,8 +17,6 @@ Floats = NDArray[np.float64]
 
 EVERY = 3  # keyframes from one look for loops to the next
 FAR_EVERY = 6
-TIED = 0.3
-"""m of way that an edge between two passes counts for: it ties them as well as driving that far."""
 CONFIRMED_BY = 1
 """Further loops that must agree with one that is found far from where it was expected."""
 CONSISTENT = 11.3
@@ -71,7 +69,7 @@ class Closing:
 
     def _add(self, closure: Closure) -> None:
         self.graph.add_edge(Edge(closure.i, closure.j, closure.i_from_j, closure.information, robust=True))
-        self.ways.add(closure.i, closure.j, TIED)
+        self.ways.tie(closure.i, closure.j, closure.information)
         self.loops += 1
 
     def _confirmed(self, closure: Closure) -> list[Closure]:

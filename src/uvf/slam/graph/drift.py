@@ -29,6 +29,10 @@ class Drift:
         return np.minimum(self.heading_start + self.heading * way, self.heading_most)
 
 
+TIED = 0.3
+"""m of way that an edge between two passes counts for: it ties them as well as driving that far."""
+
+
 class PathLengths:
     """Shortest path lengths [m] between keyframes along the edges of the graph."""
 
@@ -42,6 +46,11 @@ class PathLengths:
         self._i.append(i)
         self._j.append(j)
         self._length.append(max(length, 1e-3))
+
+    def tie(self, i: int, j: int, information: Floats) -> None:
+        """Adds a loop with its information (3, 3) of (x, y, yaw); one along a fence, whose sigma is larger, ties nothing."""
+        if np.linalg.eigvalsh(np.linalg.inv(information)[:2, :2])[-1] <= TIED**2:
+            self.add(i, j, TIED)
 
     def since(self, k: int, n: int) -> Floats:
         """Shortest path lengths (n,) [m] from keyframe k to each of the n keyframes."""

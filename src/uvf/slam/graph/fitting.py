@@ -15,6 +15,8 @@ NO_PRIOR = np.zeros((3, 3))
 LEAST_SHARE, MOST_RMS = 0.6, 0.05
 MOST_THROUGH = 0.15
 """Of the surfaces that the other sees, those it has looked through."""
+UNSEEN = 0.01 * np.eye(3)
+"""Information of what a match does not see, as the way along a fence: its sigmas are so many m and rad, so that it tells nothing."""
 FLOOR = np.diag((0.01, 0.01, 0.003)) ** 2
 """Covariance that no match is better than: objects move, floors tilt the lidar [m^2, rad^2]."""
 
@@ -48,6 +50,6 @@ def looks(node: Node, submap: Submap, nodes: KeyframeNodes, anchor_from_node: Po
 
 def information_of(found: Match) -> Floats:
     """Information (3, 3) [1/m^2, 1/rad^2] of a closure by a match, no better than FLOOR allows."""
-    covariance = np.linalg.inv(found.information + 10.0 * np.eye(3)) + FLOOR
+    covariance = np.linalg.inv(found.information + UNSEEN) + FLOOR
     information: Floats = np.linalg.inv(covariance)
     return information

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.models.keys import key
 from uvf.models.params import Params
-from uvf.slam.graph.closing import TIED, Closing
+from uvf.slam.graph.closing import Closing
 from uvf.slam.graph.drift import PathLengths
 from uvf.slam.graph.loops import LoopSearch
 from uvf.slam.graph.motion import UNKNOWN, OdometryMotion
@@ -126,8 +126,11 @@ class GraphSlam:
             self.graph.add_pose(pose)
         add_edges(session.edges, self.graph)
         e = session.edges
-        for (i, j), measured, kind in zip(e.ends.tolist(), e.measured.tolist(), e.kinds.tolist(), strict=True):
-            self.ways.add(i, j, TIED if kind == LOOP else hypot(measured[0], measured[1]))
+        for (i, j), measured, information, kind in zip(e.ends.tolist(), e.measured, e.information, e.kinds.tolist(), strict=True):
+            if kind == LOOP:
+                self.ways.tie(i, j, information)
+            else:
+                self.ways.add(i, j, hypot(measured[0], measured[1]))
         self._way, self._turn, self._pose = way, turn, map_from_base
         self._near = self.nodes.nearest(map_from_base)
         self._node_covariance = self._covariance = self.graph.relative_covariance(0, self._near) if self._near else np.zeros((3, 3))
