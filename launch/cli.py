@@ -133,7 +133,10 @@ def run(
     seeds: Annotated[int | None, typer.Option(min=1, max=10_000, help=SEEDS)] = None,
     change: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
 ) -> None:
-    """Run a mission in one process, as fast as it goes, and score it: exit code 0 when every criterion holds, or all tasks are done where there is none."""
+    """Run a mission in one process, as fast as it goes, and score it; 'uvf up' runs it live.
+
+    The exit code is 0 when every criterion holds; where there are none, when all tasks are done.
+    """
     from launch.commands.run import run_and_report, run_campaign
     from uvf.models.yaml_data import BadInput
 

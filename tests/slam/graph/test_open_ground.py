@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from uvf.maths.se2 import Pose2, inverse, transform
+from uvf.slam.graph.drift import TIED, PathLengths
+from uvf.slam.graph.fitting import information_of
 from uvf.slam.graph.method import GraphSlam
 from uvf.slam.graph.motion import ALLOWANCE, LEAST_OFF, MotionNoise, OdometryMotion
 from uvf.slam.graph.trust import Trust
+from uvf.slam.matching.imls import Match
 from uvf.slam.reading import Beams, Reading
 
 BEAMS = Beams((0.0, 0.0), np.radians(np.linspace(-135.0, 135.0, 541)), 0.1, 10.0)
@@ -57,6 +60,44 @@ def test_people_do_drag_the_map_of_who_does_not_say():
     heading, position = across_the_square(says=False)
     assert heading > 0.08
     assert position > 10.0
+
+
+def beside_a_fence(pose, y=-3.0):
+    """(541,) ranges [m] of a straight fence without an end, along x at ``y`` [m]."""
+    bearings = np.arctan2(*BEAMS.directions.T[::-1]) + pose.yaw
+    with np.errstate(divide="ignore"):
+        ranges = (y - pose.y) / np.sin(bearings)
+    return np.where((ranges > 0.0) & (ranges < BEAMS.range_max), ranges, 0.0)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_fence_seen_twice_does_not_say_where_along_it(seed):
+    """There and back beside a fence, which is all that is seen: the way along it is the odometry's."""
+    rng, slam, errors = np.random.default_rng(seed), GraphSlam(), []
+    there = [Pose2(0.1 * k, 0.0, 0.0) for k in range(400)]
+    turn = [Pose2(40.0, 0.0, 0.1 * k) for k in range(32)]
+    back = [Pose2(40.0 - 0.1 * k, 0.1 * min(k, 8), np.pi) for k in range(400)]
+    for k, pose in enumerate((*there, *turn, *back)):
+        ranges = beside_a_fence(pose)
+        noisy = np.where(ranges > 0.0, ranges + 0.01 * rng.standard_normal(len(ranges)), 0.0)
+        found = slam.add(Reading(0.2 * k, noisy, BEAMS, pose, (0.01, 0.002))).map_from_base
+        errors.append(np.hypot(found.x - pose.x, found.y - pose.y))
+    assert slam.closing.loops > 2
+    assert max(errors) < 0.05
+
+
+def test_a_match_tells_nothing_of_the_way_that_it_does_not_see():
+    turn = np.array(((0.8, -0.6, 0.0), (0.6, 0.8, 0.0), (0.0, 0.0, 1.0)))
+    information = information_of(Match(Pose2(1.5, 0.0, 0.0), turn @ np.diag((0.0, 1e5, 1e5)) @ turn.T, 1.0, 0.01))
+    sigmas, ways = np.linalg.eigh(np.linalg.inv(information)[:2, :2])
+    assert np.sqrt(sigmas) == pytest.approx([0.01, 10.0], abs=0.01)
+    assert np.abs(ways[:, 1]) == pytest.approx([0.8, 0.6], abs=0.01)
+    lengths = PathLengths()
+    lengths.add(0, 1, 20.0)
+    lengths.tie(0, 1, information)
+    assert lengths.since(0, 2)[1] == 20.0
+    lengths.tie(0, 2, np.diag((1e3, 1e3, 1e3)))
+    assert lengths.since(0, 3)[2] == TIED
 
 
 READING = Reading(0.0, np.zeros(541), BEAMS, Pose2(0.0, 0.0, 0.0))
