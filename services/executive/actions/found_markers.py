@@ -74,6 +74,7 @@ class VisitFoundAction:
         found = now.found(self._finders)
         for name, visitor in self._visitors.items():
             self._step_one(now, name, visitor)
+            self._pass_by(now, name, visitor, found)
         self._share_out(now, found)
         self.reason = "; ".join([f"{len(self._visited)} of {self._count} visited, {len(found)} found", *self._headings(), *self._out()])
         if len(self._visited) >= self._count:
@@ -106,6 +107,18 @@ class VisitFoundAction:
                 self._drive(now, visitor, visitor.goal, visitor.marker)
             elif visitor.marker is not None:
                 self._ask(now, name, visitor, visitor.marker)
+
+    def _pass_by(self, now: TeamSituation, name: str, visitor: _Visitor, found: list[FoundMarker]) -> None:
+        """Who comes as near to a marker as it would stop has visited it, wherever it goes; nobody goes there any more."""
+        here = now.place(name)
+        if here is None or not visitor.is_engaged or visitor.lost or visitor.away_since is not None:
+            return
+        for marker in found:
+            if dist(here[:2], marker.place) <= self._near and not any(marker.is_of(other) for other in self._visited):
+                self._visited.append(marker)
+                for other in self._visitors.values():
+                    if other.marker is not None and marker.is_of(other.marker):
+                        other.drop(now)
 
     def _headings(self) -> list[str]:
         going = [(name, visitor.marker.place) for name, visitor in self._visitors.items() if visitor.marker is not None]

@@ -56,7 +56,7 @@ def test_who_has_been_somewhere_goes_to_the_next(team):
 
 
 def test_the_shortest_way_comes_first_whoever_is_named_first(team):
-    team.find("carl", (7.0, 4.4))
+    team.find("carl", (6.5, 4.4))
     team.step(5)
     assert [vehicle for vehicle, *_ in goals(team)] == ["bert"]
 
@@ -185,3 +185,13 @@ def test_a_condition_counts_each_marker_once(tmp_path):
 def test_what_cannot_be_done_is_refused_at_load(task, why, tmp_path):
     with pytest.raises(BadInput, match=why):
         Team(f"  - {{{task}}}\n", tmp_path)
+
+
+def test_who_passes_by_a_marker_has_visited_it_and_who_was_on_its_way_there_stops(team):
+    team.find("carl", (4.2, 1.3), (5.4, 4.4))
+    team.step(5)
+    assert sorted(vehicle for vehicle, *_ in goals(team)) == ["anne", "bert"]
+    team.places["bert"] = (4.2, 2.2)
+    team.step(12)
+    assert "1 of 2 visited" in team.tasks.tasks[0].reason and "bert goes to (5, 4)" in team.tasks.tasks[0].reason
+    assert "cancel anne" in team.requests() and "cancel bert" not in team.requests()

@@ -134,7 +134,7 @@ class FoundMarkers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     by: Annotated[Who, plain("Vehicles or roles whose detectors find them; the same marker found by two counts once.")]
     count: Annotated[int, Meta(ge=1, le=200), key("", "How many have to be visited.")]
-    near: Annotated[Distance, key("m", "Distance from a marker at which a vehicle stops.")] = 1.2
+    near: Annotated[Distance, key("m", "Distance from a marker at which a vehicle stops; who passes it as near has visited it, too.")] = 1.2
 
 
 class VisitTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
