@@ -59,7 +59,7 @@ def test_the_check_of_a_mission_tells_each_fault_with_its_place(faulty, monkeypa
 
 def test_a_run_says_so_before_it_begins(faulty, monkeypatch, capsys):
     monkeypatch.setattr(run, "load_scenario", lambda path: load_scenario(path, faulty))
-    monkeypatch.setattr(run, "run_lockstep", lambda *_: SimpleNamespace(passed=True))
+    monkeypatch.setattr(run, "run_lockstep", lambda *_: SimpleNamespace(passed=True, recording_error=""))
     monkeypatch.setattr(run, "_print_result", lambda *_: None)
     assert run.run_and_report(str(faulty / "missions" / "two.yaml"), 1.0, faulty / "log.mcap", []) == 0
     assert capsys.readouterr().err == f"uvf: {LINE}\n"
