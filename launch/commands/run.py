@@ -119,7 +119,7 @@ def criteria_table(verdicts: Sequence[Verdict]) -> Table:
         column.overflow = "fold"  # names of measures are looked up, also on a narrow terminal
     for verdict in verdicts:
         row = (shown(verdict.subject), verdict.criterion.measure, f"{verdict.found.value:.3g}", verdict.limits)
-        table.add_row(*row, "passed" if verdict.passed else "FAILED", shown(verdict.found.circumstances))
+        table.add_row(*row, verdict.word, shown(verdict.found.circumstances))
     return table
 
 

@@ -17,6 +17,7 @@ from launch.reports.history import History
 from launch.reports.recorded_run import RecordedRun
 from launch.reports.report import vehicle_figures
 from launch.reports.team_page import draw_world, way_of
+from launch.scoring.scores import FAILED
 from uvf.models.yaml_data import BadInput
 
 Floats = NDArray[np.float64]
@@ -54,7 +55,7 @@ def criteria_rows(runs: Sequence[RecordedRun]) -> list[tuple[str, ...]]:
 
     def value(run: RecordedRun, key: tuple[str, str, str]) -> str:
         found = next((v for v in run.verdicts if (v.subject, v.criterion.measure, v.limits) == key), None)
-        return "" if found is None else f"{found.found.value:.3g}" + ("" if found.passed else " FAILED")
+        return "" if found is None else f"{found.found.value:.3g}" + ("" if found.passed else f" {FAILED}")
 
     return [(*key, *(value(run, key) for run in runs)) for key in keys]
 

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from pathlib import Path
 
+from launch.scoring.scores import FAILED, PASSED
 from uvf.runtime.messages.validation import escaped
 
 STYLE = """
@@ -20,7 +21,6 @@ th { color: #525c6b; font-weight: 600; } td.number { text-align: right; font-var
 img { max-width: 100%; height: auto; } pre { background: #f5f6f9; padding: .8rem; overflow-x: auto; font-size: .82rem; }
 details > summary { cursor: pointer; margin: .4rem 0; } .about { color: #525c6b; margin: 0; }
 """
-VERDICTS = ("passed", "FAILED")
 
 
 def document(title: str, sections: Sequence[tuple[str, str]], head: str) -> str:
@@ -53,7 +53,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 def _cell(value: object) -> str:
     if isinstance(value, int | float):
         return f'<td class="number">{value:,.6g}</td>'.replace(",", " ")
-    kind = f' class="{value}"' if value in VERDICTS else ""
+    kind = f' class="{value}"' if value in (PASSED, FAILED) else ""
     return f"<td{kind}>{text(value)}</td>"
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from launch.reports.history import History
 from launch.reports.traffic import Traffic
 from launch.scoring.last_words import LastWords
-from launch.scoring.scores import Scorer, Verdict
+from launch.scoring.scores import FAILED, PASSED, Scorer, Verdict
 from schemas import topics
 from schemas.messages import Event, Tasks, TaskStatus
 from schemas.topics import SYSTEM
@@ -26,7 +26,6 @@ from uvf.runtime.log.run_samples import run_samples
 from uvf.runtime.messages.step_times import NS
 from uvf.runtime.messages.topic_lookup import topic_of
 
-PASSED, FAILED = "passed", "FAILED"
 ENDING = 1.0  # s before the mission's duration, within which a run is over
 
 
@@ -99,9 +98,7 @@ class RecordedRun:
             if name in _TOLD or name.startswith("state/events/"):
                 self.told.heard(sample)
         elif sample.key == topics.TASKS.at(SYSTEM):
-            told = decode_sample(sample, Tasks)
-            self.tasks = list(told.tasks)
-            self.tasks_ended = told.state != TaskStatus.RUNNING
+            self.tasks = list(decode_sample(sample, Tasks).tasks)
             for i, task in enumerate(self.tasks):
                 if task.state == TaskStatus.RUNNING:
                     self.begun.setdefault(i, task.since)
@@ -133,5 +130,6 @@ def recorded_run(path: Path) -> Iterator[RecordedRun]:
         with contextlib.suppress(BadInput):  # of a log that was cut off
             run.metadata = log_metadata(log)
         run.vehicles = dict(sorted(run.vehicles.items()))
-        run.verdicts = scorer.judge() if scorer is not None else []
+        if scorer is not None:
+            run.verdicts, run.tasks_ended = scorer.judge(), scorer.tasks.ended is not None
         yield run

@@ -81,10 +81,7 @@ def _sections(run: RecordedRun, maps: list[ReportedMap], target: Path) -> Iterat
 
 
 def _criteria(run: RecordedRun) -> str:
-    rows = (
-        (v.subject, v.criterion.measure, v.found.value, v.limits, v.margin, "passed" if v.passed else "FAILED", v.found.circumstances)
-        for v in run.verdicts
-    )
+    rows = ((v.subject, v.criterion.measure, v.found.value, v.limits, v.margin, v.word, v.found.circumstances) for v in run.verdicts)
     return html.table(("subject", "measure", "value", "limit", "margin", "", "decided by"), rows)
 
 

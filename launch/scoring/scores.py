@@ -88,6 +88,9 @@ class Scorer:
         return self.measure(criterion.vehicle, criterion.measure)
 
 
+PASSED, FAILED = "passed", "FAILED"
+
+
 @dataclass(frozen=True)
 class Verdict:
     """What was measured for one criterion."""
@@ -100,6 +103,11 @@ class Verdict:
         """Whether the value is within the criterion's limits."""
         low, high = self.criterion.at_least, self.criterion.at_most
         return (low is None or self.found.value >= low) and (high is None or self.found.value <= high)
+
+    @property
+    def word(self) -> str:
+        """``PASSED`` or ``FAILED``."""
+        return PASSED if self.passed else FAILED
 
     @property
     def margin(self) -> float:

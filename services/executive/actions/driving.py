@@ -152,12 +152,14 @@ class FlyToAction(RequestAction):
             self._is_taken = self._accepted(now, self._ticket or now.desk.ask("goal", self.vehicle, message))
             return False
         status, here = now.now.status.get(self.vehicle), now.place(self.vehicle)
-        if status is None or here is None or not status.HasField("circle"):
+        if status is None or here is None:
             return False
         x, y, z = self._place
+        distance, climb = hypot(here[0] - x, here[1] - y), z - here[2]
+        self.reason = f"{distance:.0f} m left, {abs(climb):.0f} m to {'climb' if climb > 0 else 'descend'}"
+        if not status.HasField("circle"):
+            return False
         circle = status.circle
         if abs(circle.centre.z - z) > SAME_HEIGHT and hypot(circle.centre.x - x, circle.centre.y - y) <= SAME_HEIGHT:
             raise Failed(f"{self.vehicle}: {z:g} m is too low for it; it holds at {circle.centre.z:.0f} m")
-        distance, climb = hypot(here[0] - x, here[1] - y), z - here[2]
-        self.reason = f"{distance:.0f} m left, {abs(climb):.0f} m to {'climb' if climb > 0 else 'descend'}"
         return distance <= CIRCLING * abs(circle.radius) and abs(climb) <= LEVEL

@@ -38,9 +38,14 @@ class _Visitor:
     """Since when [s] it does something else."""
 
     @property
+    def takes_part(self) -> bool:
+        """Whether it does what this task tells it."""
+        return self.is_engaged and not self.lost and self.away_since is None
+
+    @property
     def is_free(self) -> bool:
         """Whether it may be sent to a marker."""
-        return self.is_engaged and not self.lost and self.away_since is None and self.marker is None
+        return self.takes_part and self.marker is None
 
     def drop(self, now: TeamSituation) -> None:
         """It goes to no marker any more."""
@@ -111,7 +116,7 @@ class VisitFoundAction:
     def _pass_by(self, now: TeamSituation, name: str, visitor: _Visitor, found: list[FoundMarker]) -> None:
         """Who comes as near to a marker as it would stop has visited it, wherever it goes; nobody goes there any more."""
         here = now.place(name)
-        if here is None or not visitor.is_engaged or visitor.lost or visitor.away_since is not None:
+        if here is None or not visitor.takes_part:
             return
         for marker in found:
             if dist(here[:2], marker.place) <= self._near and not any(marker.is_of(other) for other in self._visited):

@@ -44,11 +44,12 @@ class VisitAction:
         if self._routes is None:
             if not all(ticket.accepted or ticket.refused for ticket in self._tickets.values()):
                 return False
-            self._routes = self._shared_out(now)
-            for route in self._routes or ():
-                route.begin(now)
-            if self._routes is None:
+            routes = self._shared_out(now)
+            if routes is None:
                 return False
+            for route in routes:
+                route.begin(now)
+            self._routes = routes
         done = [route for route in self._routes if route.step(now)]
         self._routes = [route for route in self._routes if route not in done]
         self.reason = "; ".join(f"{route.vehicle}: {route.reason}" for route in self._routes)

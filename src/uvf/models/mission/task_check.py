@@ -38,6 +38,7 @@ def check_tasks(tasks: list[Task], roles: Roles, vehicles: Mapping[str, object],
         for who, where in _named(task, place):
             _check_who(who, roles, vehicles, where)
         for name, where in _alone(task, place):
+            _check_who(name, roles, vehicles, where)
             if name in roles:
                 raise BadInput(f"{where}: '{name}' is a role; name one vehicle, as '{roles[name][0]}'")
         if task.follow is not None and task.follow.leader in members_of(task.follow.vehicle, roles):
@@ -89,12 +90,12 @@ def _check_task(task: Task, place: FileLocation, folder: Path) -> None:
 
 
 def _named(task: Task, place: FileLocation) -> Iterator[tuple[Who, FileLocation]]:
-    """Everybody whom a task names, with where."""
+    """Whom a task names, with where, but for those of ``_alone``."""
     verb = verb_of(task)
     does = getattr(task, verb, None)
     if isinstance(does, str | list) and verb not in COMPOSITES:
         yield does, place.at(verb)
-    for part in ("vehicle", "leader", "to"):
+    for part in ("vehicle", "to") if task.share_map is None else ("to",):
         if (who := getattr(does, part, None)) is not None:
             yield who, place.at(verb, part)
     if task.visit is not None and task.visit.found is not None:
@@ -102,8 +103,6 @@ def _named(task: Task, place: FileLocation) -> Iterator[tuple[Who, FileLocation]
     for name, condition in (("when", task.when), ("until", task.until)):
         if condition is not None and condition.vehicle is not None:
             yield condition.vehicle, place.at(name, "vehicle")
-        if condition is not None and condition.near is not None:
-            yield condition.near.vehicle, place.at(name, "near", "vehicle")
 
 
 def _alone(task: Task, place: FileLocation) -> Iterator[tuple[str, FileLocation]]:

@@ -16,7 +16,7 @@ LEAST_SHARE, MOST_RMS = 0.6, 0.05
 MOST_THROUGH = 0.15
 """Of the surfaces that the other sees, those it has looked through."""
 UNSEEN = 0.01 * np.eye(3)
-"""Information of what a match does not see, as the way along a fence: its sigmas are so many m and rad, so that it tells nothing."""
+"""Information of what a match does not see, as the way along a fence: with a sigma of 10 m or 10 rad it tells nothing."""
 FLOOR = np.diag((0.01, 0.01, 0.003)) ** 2
 """Covariance that no match is better than: objects move, floors tilt the lidar [m^2, rad^2]."""
 
