@@ -24,7 +24,7 @@ RunArgument = Annotated[Path, typer.Argument(metavar="LOG", help="An MCAP log, o
 
 
 @log_app.command("info")
-def log_info(log: LogArgument) -> None:
+def log_info(log: RunArgument) -> None:
     """Topics, counts, length, gaps and hash of a log."""
     from launch.commands.log_tools import describe_log
 

@@ -1,8 +1,10 @@
-"""What ``uvf log events`` and ``uvf log echo`` print of a recorded run."""
+"""What ``uvf log events`` and ``uvf log echo`` print of a recorded run, and what is said of one that has no end."""
 
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
+
+import typer
 
 from launch.commands.live.topic import sample_text
 from launch.scoring.last_words import event_text
@@ -10,7 +12,8 @@ from schemas import topics
 from schemas.messages import Event
 from schemas.topics import SYSTEM
 from uvf.runtime.bus.wire import Malformed, decode_sample
-from uvf.runtime.log.run_samples import matching_keys, run_keys, run_samples
+from uvf.runtime.log.folder import logs_of
+from uvf.runtime.log.run_samples import is_cut_off, matching_keys, run_keys, run_samples
 from uvf.runtime.messages.validation import escaped
 
 EVENTS = (topics.EVENTS.by("*").at("*"), topics.SYSTEM_EVENTS.by("*").at(SYSTEM))
@@ -35,3 +38,10 @@ def message_lines(run: Path, key: str, count: int) -> Iterator[str]:
     """Yields the text of each message that matches a key, at most ``count`` (0 = all), in order of time. Raises BadInput."""
     for sample in islice(run_samples(run, matching_keys(run, key, run_keys(run))), count or None):
         yield sample_text(sample)
+
+
+def tell_cut_off(run: Path) -> None:
+    """Says, beside what is printed of a run, of which of its logs only a part is whole. Raises BadInput."""
+    for log in logs_of(run):
+        if is_cut_off(log):
+            typer.echo(f"{log}: still being written, or cut off: this is what is whole of it", err=True)

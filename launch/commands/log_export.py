@@ -12,6 +12,7 @@ import pyarrow.parquet
 import typer
 from google.protobuf.message import DecodeError
 
+from launch.commands.log_contents import tell_cut_off
 from launch.reports.foxglove import foxglove_layout
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.log.folder import refuse_log, run_folder
@@ -84,6 +85,7 @@ def export_log(run: Path, keys: Sequence[str], kind: Kind, out: Path | None) -> 
     except OSError as error:
         raise BadInput(f"{folder}: {error.strerror or error}: choose another folder with --out") from error
     typer.echo(f"{sum(table.count for table in tables.values())} messages of {len(tables)} topics saved into {folder}")
+    tell_cut_off(run)
 
 
 def save_layout(run: Path, out: Path | None) -> None:

@@ -9,15 +9,17 @@ from threading import Event
 import typer
 
 from launch import catalogue, settings
+from launch.commands.log_contents import tell_cut_off
 from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.zenoh_bus import ZenohBus
 from uvf.runtime.contract.instances import ServiceInstance
-from uvf.runtime.log.folder import recovered_path
-from uvf.runtime.log.reading import log_begin, log_metadata, read_log
+from uvf.runtime.log.folder import logs_of, recovered_path
+from uvf.runtime.log.reading import log_begin, log_metadata
 from uvf.runtime.log.recovery import recover
 from uvf.runtime.log.replay import into_service, logged_site, onto_bus
+from uvf.runtime.log.run_samples import run_samples, whole_log
 
 SHOWN = 20
 
@@ -75,26 +77,33 @@ def _hosts_named(name: str, site: Scenario, vehicle: str | None, runs_programs: 
     return hosts
 
 
-def describe_log(log: Path) -> None:
-    """Prints the topics of a log with type, count and rate [Hz], its length and its metadata. Raises BadInput."""
+def describe_log(run: Path) -> None:
+    """Prints the topics of a log, or of all logs of a run's folder, with type, count and rate [Hz], its length and its metadata.
+
+    Of one that was cut off, as far as it is whole. Raises BadInput.
+    """
     counts: Counter[str] = Counter()
     sizes: Counter[str] = Counter()
     types: dict[str, str] = {}
     end_ns = 0
-    for sample in read_log(log):
+    for sample in run_samples(run):
         counts[sample.key] += 1
         sizes[sample.key] += len(sample.payload)
         types[sample.key] = sample.type_name
         end_ns = max(end_ns, sample.stamp_ns)
-    begin = log_begin(log) / 1e9
+    logs = logs_of(run)
+    with whole_log(logs[0]) as first, whole_log(logs[-1]) as last:
+        begin = log_begin(first) / 1e9
+        metadata = log_metadata(last) if last == logs[-1] else {}
     end = end_ns / 1e9
     width = max(map(len, counts), default=0)
     for key in sorted(counts):
         rate = counts[key] / max(end - begin, 1e-9)
         typer.echo(f"{key:{width}}  {types[key]:28}  {counts[key]:7} messages  {rate:6.1f} Hz  {sizes[key] / 1000:8.0f} kB")
     typer.echo(f"{counts.total()} messages, " + (f"from {begin:.1f} s to {end:.1f} s" if begin else f"{end:.1f} s"))
-    for name, value in log_metadata(log).items():
+    for name, value in metadata.items():
         typer.echo(f"{name}: {value}")
+    tell_cut_off(run)
 
 
 def recover_log(log: Path, out: Path | None) -> None:

@@ -8,6 +8,7 @@ import typer
 from rich.console import Console
 from rich.table import Column, Table
 
+from launch.commands.log_contents import tell_cut_off
 from launch.commands.run import criteria_table, shown
 from launch.reports.comparison import criteria_rows, labels_of, write_comparison
 from launch.reports.curves import draw_curves
@@ -65,3 +66,4 @@ def plot_fields(run: Path, fields: Sequence[str], out: Path | None) -> None:
         told = f"{len(t)} values from {values.min():.6g} to {values.max():.6g}, the last {values[-1]:.6g}" if len(t) else "no values"
         typer.echo(f"{escaped(name)}: {told}")
     typer.echo(str(target))
+    tell_cut_off(run)

@@ -34,16 +34,27 @@ _OF_MISSIONS = (circuits, legs, path_error, altitude_error, waypoint_error, cour
 _OF_SEARCHES = (markers_found, marker_error, markers_reached)
 _OF_FLIGHTS = (separation, spacing_error, station_error, touchdown_sink, touchdown_error, speed_at_end)
 MEASURES: dict[str, Callable[[RecordedTrack], Finding]] = {f.__name__: f for f in (*_OF_ALL, *_OF_MISSIONS, *_OF_SEARCHES, *_OF_FLIGHTS)}
+_FLYING = {f.__name__ for f in (altitude_error, height_error, *_OF_FLIGHTS) if f is not speed_at_end}
+_DRIVING = {f.__name__ for f in (mapped_floor, map_f1)}
 
 
 def check_criteria(site: Scenario) -> None:
-    """Raises BadInput for a criterion with an unknown measure."""
+    """Raises BadInput for a criterion with an unknown measure, or one that its vehicle has nothing to be measured for."""
     for i, criterion in enumerate(site.mission.criteria):
         known: Collection[str] = TASK_MEASURES if criterion.task else MEASURES
         if criterion.measure not in known:
             place = FileLocation(str(site.mission_path)).at("criteria", i, "measure")
             of = "task has a measure" if criterion.task else "measure"
             raise BadInput(f"{place}: no {of} '{criterion.measure}'; {nearest(criterion.measure, known, len(known))}")
+        if criterion.vehicle:
+            _check_kind(criterion, site, FileLocation(str(site.mission_path)).at("criteria", i, "measure"))
+
+
+def _check_kind(criterion: Criterion, site: Scenario, place: FileLocation) -> None:
+    drives = site.members[criterion.vehicle].file.kind == "ground"
+    if criterion.measure in (_FLYING if drives else _DRIVING):
+        does, other = ("drives", "aircraft") if drives else ("flies", "ground vehicles")
+        raise BadInput(f"{place}: {criterion.vehicle} {does}; {criterion.measure} is a measure of {other}")
 
 
 class Scorer:

@@ -31,6 +31,11 @@ class ActionNode(Behaviour):
         """Begins the action."""
         self._action.begin(self._now)
 
+    @property
+    def refusal(self) -> str:
+        """Why what it asks for has been refused until now; empty where it has not, or is over."""
+        return self._action.refusal if self.status == Status.RUNNING else ""
+
     def update(self) -> Status:
         """One step of the action."""
         try:
@@ -85,7 +90,7 @@ class TaskNode(Decorator):
         if self._waits:
             self._waits, self._begun = False, self._now.t
         if self._task.until is not None and not unfulfilled(self._task.until, self._now, self._begun):
-            self._end(Status.SUCCESS, "")
+            self._end_by_until()
         else:
             yield from self.decorated.tick()
             self._judge()
@@ -102,6 +107,12 @@ class TaskNode(Decorator):
             self._tell(status, why)
         else:
             self._end(status, why)
+
+    def _end_by_until(self) -> None:
+        """It is done, unless a vehicle has refused it all the time."""
+        leaves = (node for node in self.decorated.iterate() if isinstance(node, ActionNode))
+        refusal = next((leaf.refusal for leaf in leaves if leaf.refusal), "")
+        self._end(Status.FAILURE if refusal else Status.SUCCESS, refusal)
 
     def _end(self, status: Status, why: str) -> None:
         if self.decorated.status == Status.RUNNING:

@@ -76,8 +76,9 @@ def _checked(site: Scenario, member: MissionVehicle, footing: Footing) -> float:
     start = member.entry.start
     room, height, slope = footing.at(start.x, start.y)
     if room < body.radius:
+        place = FileLocation(str(site.mission_path)).at("vehicles", member.name, "start")
         raise BadInput(
-            f"{site.mission_path}: {member.name}: start ({start.x:g}, {start.y:g}) is {room:.2f} m from a wall or furniture, "
+            f"{place}: ({start.x:g}, {start.y:g}) is {room:.2f} m from a wall or furniture, "
             f"but the vehicle has a radius of {body.radius:g} m; move it"
         )
     return height + slope * (body.radius + COARSE)

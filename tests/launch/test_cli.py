@@ -90,6 +90,11 @@ def test_a_measure_that_is_like_none_is_answered_with_all_there_are(tmp_path):
     assert "no measure 'xyz'; there are: " in done.stderr and all(name in done.stderr for name in MEASURES)
 
 
+def test_a_measure_of_the_other_kind_of_vehicle_is_refused(tmp_path):
+    done = uvf("check", mission(tmp_path, criteria=[{"vehicle": "burger", "measure": "touchdown_sink", "at_most": 1.0}]))
+    assert "measure: burger drives; touchdown_sink is a measure of aircraft" in done.stderr
+
+
 def test_broken_yaml_names_file_and_line(tmp_path):
     path = tmp_path / "broken.yaml"
     path.write_text("about: x\nworld: [house\nseed: 1\n")

@@ -8,7 +8,7 @@ import msgspec
 import pytest
 
 from schemas.limits import TEXT
-from uvf.models.yaml_data import BadInput, convert, load_yaml, nearest
+from uvf.models.yaml_data import BadInput, convert, load_yaml, nearest, parse_yaml
 
 Positive = Annotated[float, msgspec.Meta(gt=0)]
 
@@ -51,7 +51,6 @@ BAD = {
     "name: a\n? {a: 1}\n: b": "f.yaml:2: not valid YAML: a key is a list or a mapping",
     "": "f.yaml: the file is empty",
     "- name": "f.yaml: a list is not a mapping; write 'key: value' lines",
-    "name: 2020-13-45": "f.yaml: not valid YAML: month must be in 1..12",
     "name: !!int x": "f.yaml: not valid YAML",
     "name: !!python/name:os.system": "f.yaml:1: not valid YAML",
     "!!map [name]": "f.yaml:1: not valid YAML",
@@ -107,6 +106,14 @@ def test_what_is_no_text_is_refused(tmp_path):
 
 def test_numbers_with_exponents_are_numbers(tmp_path):
     assert load(tmp_path, "part: {weight: 2.6e6, size: [1e3, 1.5E-2]}").part == Part((1e3, 1.5e-2), 2.6e6)
+
+
+def test_what_looks_like_a_number_is_read_as_people_mean_it():
+    text = "{ten: 010, minus: -07, hex: 0x1F, octal: 0o17, time: 1:30, date: 2026-11-28, thousand: 1_000, binary: 0b11, small: .5}"
+    assert parse_yaml(text, "f.yaml") == {
+        **{"ten": 10, "minus": -7, "hex": 31, "octal": 15, "small": 0.5},
+        **{"time": "1:30", "date": "2026-11-28", "thousand": "1_000", "binary": "0b11"},
+    }
 
 
 def test_the_nearest_name_is_offered_or_all_there_are():

@@ -1,5 +1,6 @@
 """What a task of one vehicle does: the base of all actions, and those on arming and modes."""
 
+from collections.abc import Iterable
 from typing import Protocol
 
 from schemas.messages import ArmRequest, Mode, ModeRequest
@@ -18,6 +19,11 @@ class TaskAction(Protocol):
     reason: str
     """What it does now, in words."""
 
+    @property
+    def refusal(self) -> str:
+        """Why what it asks for has been refused until now; empty where it has not."""
+        ...
+
     def begin(self, now: TeamSituation) -> None:
         """Begins, perhaps not for the first time."""
 
@@ -27,6 +33,11 @@ class TaskAction(Protocol):
 
     def stop(self, now: TeamSituation) -> None:
         """It is needed no more, before it was done."""
+
+
+def first_refusal(actions: Iterable[TaskAction]) -> str:
+    """The refusal of the first action that has met one."""
+    return next((action.refusal for action in actions if action.refusal), "")
 
 
 class RequestAction:
@@ -49,6 +60,11 @@ class RequestAction:
         """Asks no more."""
         now.desk.drop(self._ticket)
         self._ticket = None
+
+    @property
+    def refusal(self) -> str:
+        """Why what it asks for has been refused until now; empty where it has not."""
+        return f"{self.vehicle}: {self._ticket.reason}" if self._ticket is not None and self._ticket.reason else ""
 
     def _accepted(self, now: TeamSituation, ticket: PendingRequest) -> bool:
         """Whether what was asked is accepted. Raises Failed once it is refused for good."""
@@ -112,6 +128,11 @@ class EngageAction(RequestAction):
         self.reason = "" if done else self._parts[self._at].reason
         return done
 
+    @property
+    def refusal(self) -> str:
+        """Why it is not armed, or not in the mode."""
+        return self._parts[self._at].refusal if self._at < len(self._parts) else ""
+
     def stop(self, now: TeamSituation) -> None:
         """Asks no more."""
         for part in self._parts:
@@ -136,6 +157,11 @@ class EngagedAction(RequestAction):
         """Asks no more; the vehicle goes on with its job until somebody tells it something else."""
         super().stop(now)
         self._engage.stop(now)
+
+    @property
+    def refusal(self) -> str:
+        """Why it has not begun."""
+        return self._engage.refusal or super().refusal
 
     def step(self, now: TeamSituation) -> bool:
         """Whether it is done. Raises Failed where it cannot be."""

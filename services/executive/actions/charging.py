@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import dist
 
 from schemas.messages import Mode
-from services.executive.actions.action import ChangeModeAction, Failed
+from services.executive.actions.action import ChangeModeAction, Failed, first_refusal
 from services.executive.actions.driving import GoalAction
 from services.executive.situation import TeamSituation
 from uvf.models.mission.fixtures import ChargerFile
@@ -92,6 +92,11 @@ class ChargeAction:
         self._goal = GoalAction(self.vehicle, (charger.x, charger.y), None)
         self._goal.begin(now)
         return False
+
+    @property
+    def refusal(self) -> str:
+        """Why it does not drive to a charger, or stand there."""
+        return first_refusal(part for part in (self._goal, self._hold, self._pause) if part is not None)
 
     def stop(self, now: TeamSituation) -> None:
         """Lets the charger go."""

@@ -64,8 +64,7 @@ class ErrandAction(EngagedAction):
             self.reason = status.reason or f"{status.distance_left:.1f} m left"
             return self._is_done(status)
         if self._taken or now.t - since > TAKEN_WITHIN:
-            why = now.given_up.get(self.vehicle, f"does something else: {status.job}")
-            raise Failed(f"{self.vehicle}: {why}")
+            raise Failed(f"{self.vehicle}: {now.given_up.get(self.vehicle) or _instead(status)}")
         return False
 
     def _message(self) -> GoalRequest | RouteRequest | FollowRequest:
@@ -76,6 +75,15 @@ class ErrandAction(EngagedAction):
 
     def _is_done(self, status: NavStatus) -> bool:
         return status.state == NavStatus.REACHED
+
+
+def _instead(status: NavStatus) -> str:
+    """What a vehicle does that was told so by somebody else."""
+    if status.job == "goal":
+        return f"somebody else has sent it to ({status.goal.x:g}, {status.goal.y:g})"
+    if status.job == "follow":
+        return f"somebody else has told it to follow {status.follow.vehicle}"
+    return f"somebody else has told it: {status.job or 'nothing'}"
 
 
 class GoalAction(ErrandAction):

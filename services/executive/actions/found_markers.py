@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from math import atan2, cos, dist, pi, sin
 
 from schemas.messages import Mode
-from services.executive.actions.action import EngageAction, Failed
+from services.executive.actions.action import EngageAction, Failed, first_refusal
 from services.executive.actions.driving import GoalAction
 from services.executive.actions.visiting import preview_request
 from services.executive.asking import PendingRequest
@@ -88,6 +88,11 @@ class VisitFoundAction:
         if all(v.lost or (v.away_since is not None and now.t - v.away_since >= AWAY_FOR) for v in self._visitors.values()):
             raise Failed("; ".join(self._out()))
         return False
+
+    @property
+    def refusal(self) -> str:
+        """Why a vehicle takes no part."""
+        return first_refusal(visitor.engage for visitor in self._visitors.values())
 
     def stop(self, now: TeamSituation) -> None:
         """Asks no more; who is under way to a marker stops."""

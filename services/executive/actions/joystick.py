@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import DriveCommand, Mode
-from services.executive.actions.action import EngageAction
+from services.executive.actions.action import EngageAction, first_refusal
 from services.executive.situation import TeamSituation
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import stamp
@@ -96,6 +96,11 @@ class DriveAction:
         command = DriveCommand(timestamp=stamp(now.t), linear=linear, angular=angular)
         now.drive.update(dict.fromkeys(self._vehicles, command))
         return velocity is None
+
+    @property
+    def refusal(self) -> str:
+        """Why a vehicle cannot be driven by hand."""
+        return first_refusal(self._engages)
 
     def stop(self, now: TeamSituation) -> None:
         """The vehicles stand."""

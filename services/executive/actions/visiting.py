@@ -6,7 +6,7 @@ from math import inf
 import numpy as np
 
 from schemas.messages import PreviewRequest, Vector3
-from services.executive.actions.action import Failed
+from services.executive.actions.action import Failed, first_refusal
 from services.executive.actions.driving import RouteAction
 from services.executive.asking import AGAIN, PATIENCE, PendingRequest
 from services.executive.interface import SOURCE
@@ -54,6 +54,11 @@ class VisitAction:
         self._routes = [route for route in self._routes if route not in done]
         self.reason = "; ".join(f"{route.vehicle}: {route.reason}" for route in self._routes)
         return not self._routes
+
+    @property
+    def refusal(self) -> str:
+        """Why a vehicle does not drive its tour."""
+        return first_refusal(self._routes or ())
 
     def stop(self, now: TeamSituation) -> None:
         """Asks no more."""

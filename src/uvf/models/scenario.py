@@ -123,7 +123,7 @@ def load_scenario(mission: str | Path, root: str | Path = ROOT) -> Scenario:
     site = Scenario(mission, data, world, worlds / data.world, members)
     check_starts(site)
     kinds = {name: file.kind for name, file in files.items()}
-    check_parts(data.faults, kinds, place.at("faults"))
+    check_parts(data.faults, files, place.at("faults"))
     _check_jobs(data.vehicles, kinds, place.at("vehicles"))
     check_drivers(data.tasks, data.roles, kinds, place)
     check_explorers(data.tasks, data.roles, {name for name, entry in data.vehicles.items() if entry.job.explore}, place)

@@ -57,7 +57,10 @@ class FileLocation(NamedTuple):
 
 
 class _Rules(SafeConstructor, Resolver):
-    """YAML 1.2 where 1.1 surprises: ``1e3`` is a number, and a key given twice is an error. Aliases cannot make a small file huge."""
+    """YAML 1.2 where 1.1 surprises: ``1e3`` is a number, ``010`` is ten, ``1:30`` not ninety, ``2026-11-28`` a name.
+
+    A key given twice is an error. Aliases cannot make a small file huge.
+    """
 
     def get_single_node(self) -> Any:
         node = super().get_single_node()  # type: ignore[misc]
@@ -76,7 +79,22 @@ class _Rules(SafeConstructor, Resolver):
         return super().construct_mapping(node, deep)
 
 
-_Rules.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+\Z"), list("-+0123456789."))
+def _integer(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> int:
+    text = loader.construct_scalar(node)
+    return int(text, 0) if text[:2] in ("0x", "0o") else int(text)
+
+
+# The numbers of YAML 1.2.2, 10.3.2, and no dates: anything else that looks like one is text.
+_INT, _FLOAT, _DATE, _DIGITS = "tag:yaml.org,2002:int", "tag:yaml.org,2002:float", "tag:yaml.org,2002:timestamp", "-+0123456789."
+_Rules.yaml_implicit_resolvers = {
+    first: [(tag, pattern) for tag, pattern in known if tag not in (_INT, _FLOAT, _DATE)]
+    for first, known in Resolver.yaml_implicit_resolvers.items()
+}
+_Rules.add_implicit_resolver(_INT, re.compile(r"([-+]?\d+|0o[0-7]+|0x[0-9a-fA-F]+)\Z"), list(_DIGITS))
+_Rules.add_implicit_resolver(
+    _FLOAT, re.compile(r"([-+]?(\.\d+|\d+(\.\d*)?)([eE][-+]?\d+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN))\Z"), list(_DIGITS)
+)
+_Rules.add_constructor(_INT, _integer)
 
 
 class _Loader(_Rules, Composer, yaml.CSafeLoader):
@@ -139,7 +157,7 @@ def parse_yaml(text: str, name: str) -> Any:
         mark = getattr(error, "problem_mark", None)
         place = f"{name}:{mark.line + 1}" if mark else name
         raise BadInput(f"{place}: not valid YAML: {_one_line(getattr(error, 'problem', None) or error)}") from error
-    except (ValueError, TypeError, AttributeError) as error:  # what PyYAML lets through: 2020-13-45, !!int x, !!timestamp x
+    except (ValueError, TypeError, AttributeError) as error:  # what PyYAML lets through: !!int x, !!timestamp x
         raise BadInput(f"{name}: not valid YAML: {_one_line(error)}") from error
     if data is None:
         raise BadInput(f"{name}: the file is empty")

@@ -52,6 +52,22 @@ def test_events_come_in_order_with_time_vehicle_severity_text_and_cause(run):
     assert len(said("events", run / "log-000.mcap")) == 2
 
 
+def test_info_counts_over_all_logs_of_a_run_and_what_is_repeated_once(run):
+    lines = said("info", run)
+    assert [line.split()[2] for line in lines[:3]] == ["2", "2", "1"]
+    assert lines[3] == "5 messages, 4.0 s"
+
+
+def test_of_a_log_that_was_cut_off_info_tells_what_is_whole_and_that_it_is_not(run):
+    cut = run / "log-001.mcap"
+    cut.write_bytes(cut.read_bytes()[:-100])
+    lines = said("info", cut)
+    assert "3 messages, 4.0 s" in lines
+    assert lines[-1] == f"{cut}: still being written, or cut off: this is what is whole of it"
+    assert not any(line.startswith("hash") for line in lines)
+    assert "5 messages, 4.0 s" in said("info", run)
+
+
 def test_a_log_without_events_says_so(tmp_path):
     with Recorder(tmp_path / "a.mcap"):
         pass

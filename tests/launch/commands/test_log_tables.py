@@ -148,3 +148,13 @@ def test_every_type_of_the_table_has_columns_and_numbers_that_can_be_read(topic)
         assert isinstance(get(message), (int, float) if kind is float else kind)
     for name in number_names(topic.message.DESCRIPTOR):
         assert number_of(topic.message.DESCRIPTOR, name)(message) in (None, pytest.approx(0.0, abs=4.0))
+
+
+def test_of_a_log_that_was_cut_off_what_is_whole_is_exported_and_plotted(log, tmp_path):
+    cut = tmp_path / "log-000.mcap"
+    cut.write_bytes(log.read_bytes()[:-200])
+    note = f"{cut}: still being written, or cut off: this is what is whole of it\n"
+    saved = f"{N} messages of 1 topics saved into {tmp_path / 'csv'}\n"
+    assert uvf("log", "export", tmp_path, "anne/nav/pose") == (0, saved + note)
+    code, output = uvf("plot", tmp_path, "anne/nav/pose.pose.position.x")
+    assert code == 0 and output.endswith(note) and (tmp_path / "plot.png").is_file()

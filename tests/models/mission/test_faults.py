@@ -2,10 +2,13 @@
 
 import math
 
+import msgspec
 import pytest
 
 from schemas.messages import AirData, Battery, Gnss, Imu, LaserScan, SurfaceCommand, Vector3
 from uvf.models.mission.faults import Fault, check_faults, check_parts
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.messages.readings.faults import PARTS, Faults
@@ -71,6 +74,7 @@ def test_a_bias_is_added_in_its_unit():
     [
         (Fault("two", "gnss", "lost", at=1.0), "no vehicle 'two'"),
         (Fault("one", "gnss", "lost", at=1.0, until=1.0), "is not after at"),
+        (Fault("one", "gnss", "lost", at=100.0), "100 s is after the end, 100 s"),
         (Fault("one", "scan", "bias", at=1.0, size=1.0), "takes no bias"),
         (Fault("one", "link", "frozen", at=1.0), "a link may be lost"),
         (Fault("one", "pitot", "bias", at=1.0), "needs a size"),
@@ -81,7 +85,7 @@ def test_a_bias_is_added_in_its_unit():
 )
 def test_a_list_that_makes_no_sense_is_refused(fault, why):
     with pytest.raises(BadInput, match=why):
-        check_faults([fault], {"one": None}, HERE)
+        check_faults([fault], {"one": None}, 100.0, HERE)
 
 
 def test_for_good_means_for_good():
@@ -96,8 +100,24 @@ def test_a_wheel_has_the_grip_that_its_faults_leave_it():
 
 
 @pytest.mark.parametrize(
-    ("kind", "part"), [("ground", "aileron"), ("ground", "pitot"), ("fixed_wing", "wheels"), ("fixed_wing", "left_grip")]
+    ("model", "part", "why"),
+    [
+        ("mybot05", "aileron", "it is a ground vehicle"),
+        ("mybot05", "pitot", "it is a ground vehicle"),
+        ("milvus", "wheels", "it is a fixed_wing vehicle"),
+        ("milvus", "left_grip", "it is a fixed_wing vehicle"),
+        ("milvus", "scan", "there is no lidar among the sensors"),
+    ],
 )
-def test_a_part_that_a_vehicle_does_not_have_is_refused(kind, part):
-    with pytest.raises(BadInput, match=f"one has no {part}; it is a {kind} vehicle"):
-        check_parts([Fault("one", part, "lost", at=1.0)], {"one": kind}, HERE)
+def test_a_part_that_a_vehicle_does_not_have_is_refused(model, part, why):
+    with pytest.raises(BadInput, match=f"part: one has no {part}.*{why}"):
+        check_parts([Fault("one", part, "lost", at=1.0)], {"one": load_vehicle(ROOT / "vehicles", model)}, HERE)
+
+
+def test_without_a_battery_none_can_fail():
+    whole = load_vehicle(ROOT / "vehicles", "mybot05")
+    without = msgspec.structs.replace(whole, ground=msgspec.structs.replace(whole.ground, battery=None))
+    fault = Fault("one", "battery", "lost", at=1.0)
+    check_parts([fault], {"one": whole}, HERE)
+    with pytest.raises(BadInput, match="one has no battery; give its"):
+        check_parts([fault], {"one": without}, HERE)

@@ -42,7 +42,7 @@ def test_another_goal_than_its_own_is_not_taken_for_it(tmp_path):
     team.nav["anne"] = NavStatus(job="goal", state=NavStatus.REACHED)
     team.nav["anne"].goal.x = 1.0
     team.step(2)
-    assert team.tasks.tasks[0].reason == "anne: does something else: goal"
+    assert team.tasks.tasks[0].reason == "anne: somebody else has sent it to (1, 0)"
 
 
 def test_a_refusal_is_asked_again_and_then_is_the_reason(tmp_path):
@@ -144,6 +144,14 @@ def test_a_task_ends_by_until_and_fails_after_within(tmp_path):
     team = Team("  - {name: slow, within: 3.0, goal: {vehicle: anne, x: 4.0, y: 1.7}}\n", tmp_path)
     team.step(40)
     assert (team.states(), team.tasks.tasks[0].reason.split(":")[0]) == (["FAILED"], "not done within 3 s")
+
+
+@pytest.mark.parametrize("request_", ["arm", "mode", "follow"])
+def test_what_was_refused_until_its_end_has_failed(tmp_path, request_):
+    team = Team("  - {name: behind, follow: {vehicle: bert, leader: anne}, until: {at: 1.5}}\n", tmp_path)
+    team.refusals[request_, "bert"] = "no"
+    team.step(20)
+    assert (team.states(), team.tasks.tasks[0].reason) == (["FAILED"], "bert: no")
 
 
 def test_what_is_ended_is_cancelled_before_the_vehicle_is_asked_for_the_next(tmp_path):

@@ -7,7 +7,8 @@ import msgspec
 from msgspec import Meta
 
 from uvf.models.keys import key, plain
-from uvf.models.yaml_data import BadInput, FileLocation
+from uvf.models.vehicle.file import VehicleFile
+from uvf.models.yaml_data import BadInput, FileLocation, nearest
 
 Part = Literal[
     "imu",
@@ -35,6 +36,11 @@ GRIPS = ("left_grip", "right_grip")
 """How well a wheel holds on to the ground."""
 ON_GROUND, IN_THE_AIR = ("wheels", *GRIPS), ("air_data", "pitot", "static", "aileron", "elevator", "rudder", "throttle")
 """Parts that only one kind of vehicle has."""
+SENSOR_OF = {
+    **{"imu": "imu", "compass": "imu", "gnss": "gnss", "scan": "lidar", "wheels": "encoders"},
+    **dict.fromkeys(("air_data", "pitot", "static"), "air_data"),
+}
+"""Which sensor of a vehicle's file gives what fails."""
 Size = Annotated[float, Meta(ge=-1e6, le=1e6)]
 Moment = Annotated[float, Meta(ge=0, le=1e6)]
 
@@ -68,13 +74,15 @@ class Fault(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return self.at <= t and (self.until is None or t < self.until)
 
 
-def check_faults(faults: Sequence[Fault], vehicles: Mapping[str, object], place: FileLocation) -> None:
-    """Checks a mission's faults against its vehicles. Raises BadInput."""
+def check_faults(faults: Sequence[Fault], vehicles: Mapping[str, object], duration: float, place: FileLocation) -> None:
+    """Checks a mission's faults against its vehicles and its duration [s]. Raises BadInput."""
     for i, fault in enumerate(faults):
         if fault.vehicle not in vehicles:
-            raise BadInput(f"{place.at(i, 'vehicle')}: no vehicle '{fault.vehicle}'; there are: {', '.join(sorted(vehicles))}")
+            raise BadInput(f"{place.at(i, 'vehicle')}: no vehicle '{fault.vehicle}'; {nearest(fault.vehicle, vehicles)}")
         if fault.until is not None and fault.until <= fault.at:
             raise BadInput(f"{place.at(i, 'until')}: {fault.until:g} s is not after at, {fault.at:g} s")
+        if fault.at >= duration:
+            raise BadInput(f"{place.at(i, 'at')}: {fault.at:g} s is after the end, {duration:g} s; make it or 'duration' another")
         if fault.part in GRIPS and (fault.kind == "frozen" or not -1.0 <= fault.size <= 0.0):
             raise BadInput(f"{place.at(i)}: a {fault.part} may be lost, or have a bias from -1 to 0")
         if fault.part == LINK and fault.kind != "lost":
@@ -85,9 +93,14 @@ def check_faults(faults: Sequence[Fault], vehicles: Mapping[str, object], place:
             raise BadInput(f"{place.at(i)}: a bias needs a size")
 
 
-def check_parts(faults: Sequence[Fault], kinds: Mapping[str, str], place: FileLocation) -> None:
-    """Checks that vehicles have the parts that fail; kinds: of each vehicle. Raises BadInput."""
+def check_parts(faults: Sequence[Fault], files: Mapping[str, VehicleFile], place: FileLocation) -> None:
+    """Checks that vehicles have the parts that fail; files: of each vehicle. Raises BadInput."""
     for i, fault in enumerate(faults):
-        missing = IN_THE_AIR if kinds[fault.vehicle] == "ground" else ON_GROUND
-        if fault.part in missing:
-            raise BadInput(f"{place.at(i, 'part')}: {fault.vehicle} has no {fault.part}; it is a {kinds[fault.vehicle]} vehicle")
+        file, here = files[fault.vehicle], place.at(i, "part")
+        if fault.part in (IN_THE_AIR if file.kind == "ground" else ON_GROUND):
+            raise BadInput(f"{here}: {fault.vehicle} has no {fault.part}; it is a {file.kind} vehicle")
+        sensor = SENSOR_OF.get(fault.part)
+        if sensor is not None and getattr(file.sensors, sensor) is None:
+            raise BadInput(f"{here}: {fault.vehicle} has no {fault.part}: there is no {sensor} among the sensors of its vehicle.yaml")
+        if fault.part == "battery" and not file.has_battery:
+            raise BadInput(f"{here}: {fault.vehicle} has no battery; give its vehicle.yaml one")

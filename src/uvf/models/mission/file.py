@@ -198,7 +198,7 @@ def load_mission(path: str | Path) -> MissionFile:
     _check_follow(mission.vehicles, file.at("vehicles"))
     if mission.wind is not None:
         check_wind(mission.wind, file.at("wind"))
-    check_faults(mission.faults, mission.vehicles, file.at("faults"))
+    check_faults(mission.faults, mission.vehicles, mission.duration, file.at("faults"))
     check_tasks(mission.tasks, mission.roles, mission.vehicles, file, path.parent)
     check_charging(mission.tasks, len(mission.chargers), file)
     tasks = {task.name for task in walk(mission.tasks) if task.name}

@@ -2,6 +2,7 @@
 
 import tempfile
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from schemas.topics import PREFIX
@@ -22,16 +23,21 @@ def run_samples(run: Path, expressions: Sequence[str] = EVERYTHING) -> Iterator[
     """
     last: dict[str, tuple[int, int]] = {}
     for log in logs_of(run):
-        for sample in _samples(log, expressions):
-            number = sample.stamp_ns, sample.seq
-            if last.get(sample.key) != number:
-                yield sample
-            last[sample.key] = number
+        with whole_log(log) as whole:
+            for sample in read_log(whole, _keys(whole, expressions)):
+                number = sample.stamp_ns, sample.seq
+                if last.get(sample.key) != number:
+                    yield sample
+                last[sample.key] = number
 
 
 def run_keys(run: Path) -> list[str]:
-    """The keys that the files of a run have messages of, sorted. Raises BadInput for a file that is not a whole log."""
-    return sorted({key for log in logs_of(run) for key in log_keys(log)})
+    """The keys that the files of a run have messages of, sorted; of one that was cut off, as far as it is whole. Raises BadInput."""
+    keys: set[str] = set()
+    for log in logs_of(run):
+        with whole_log(log) as whole:
+            keys.update(log_keys(whole))
+    return sorted(keys)
 
 
 def matching_keys(run: Path, wanted: str, known: Sequence[str]) -> list[str]:
@@ -42,18 +48,27 @@ def matching_keys(run: Path, wanted: str, known: Sequence[str]) -> list[str]:
     return found
 
 
-def _samples(log: Path, expressions: Sequence[str]) -> Iterator[Sample]:
+def is_cut_off(log: Path) -> bool:
+    """Whether a log has no end yet, or none any more. Raises BadInput for what is no log."""
     try:
         log_metadata(log)
     except BadInput as error:
         if "cut off" not in str(error):
             raise
-        with tempfile.TemporaryDirectory() as folder:
-            whole = Path(folder) / "log.mcap"
-            recover(log, whole)
-            yield from read_log(whole, _keys(whole, expressions))
+        return True
+    return False
+
+
+@contextmanager
+def whole_log(log: Path) -> Iterator[Path]:
+    """The log, or where it was cut off, a copy of what is whole of it. Raises BadInput where nothing can be read of it."""
+    if not is_cut_off(log):
+        yield log
         return
-    yield from read_log(log, _keys(log, expressions))
+    with tempfile.TemporaryDirectory() as folder:
+        whole = Path(folder) / log.name
+        recover(log, whole)
+        yield whole
 
 
 def _keys(log: Path, expressions: Sequence[str]) -> list[str] | None:
