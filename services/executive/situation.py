@@ -14,27 +14,31 @@ from uvf.models.scenario import MissionVehicle
 
 Point = tuple[float, float]
 
-SAME_MARKER = 1.5  # m, within which what two vehicles have found is one marker
+SAME_MARKER = 3.0  # m, that two vehicles may tell of one marker apart: each has the error of its own pose in it
 
 
 class FoundMarker(NamedTuple):
-    """A marker: where it is [m, world], and who tells of it under which number."""
+    """A marker: where it is [m, world] by the surest estimate, and by (vehicle, number there) where each that tells of it has it."""
 
     place: Point
-    told_by: frozenset[tuple[str, int]]
+    told: Mapping[tuple[str, int], Point]
 
     def may_be(self, other: "FoundMarker") -> bool:
         """Whether two are one: near each other, and nobody tells of both."""
-        tell_apart = {name for name, _ in self.told_by} & {name for name, _ in other.told_by}
+        tell_apart = {name for name, _ in self.told} & {name for name, _ in other.told}
         return not tell_apart and dist(self.place, other.place) <= SAME_MARKER
 
     def is_of(self, other: "FoundMarker") -> bool:
         """Whether both are of one marker, told at different times."""
-        return bool(self.told_by & other.told_by) or self.may_be(other)
+        return bool(self.told.keys() & other.told.keys()) or self.may_be(other)
 
     def also(self, other: "FoundMarker") -> "FoundMarker":
         """The same marker, told by more; the place is that of this one."""
-        return self._replace(told_by=self.told_by | other.told_by)
+        return self._replace(told={**other.told, **self.told})
+
+    def place_for(self, vehicle: str) -> Point:
+        """Where it is for a vehicle that goes there: as it has seen it itself, with the error that its pose has, too; or else at best."""
+        return next((place for (name, _), place in self.told.items() if name == vehicle), self.place)
 
 
 @dataclass
@@ -85,8 +89,11 @@ class TeamSituation:
         told = [(name, each) for name in vehicles if name in self.now.detections for each in self.now.detections[name].detections]
         markers: list[FoundMarker] = []
         for name, each in sorted(told, key=lambda pair: pair[1].sigma):
-            seen = FoundMarker((each.position.x, each.position.y), frozenset({(name, each.id)}))
-            known = next((k for k, marker in enumerate(markers) if marker.may_be(seen)), None)
+            place = each.position.x, each.position.y
+            seen = FoundMarker(place, {(name, each.id): place})
+            known = min(
+                (k for k, marker in enumerate(markers) if marker.may_be(seen)), key=lambda k: dist(markers[k].place, place), default=None
+            )
             if known is None:
                 markers.append(seen)
             else:

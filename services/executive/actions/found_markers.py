@@ -16,6 +16,7 @@ Point = tuple[float, float]
 SIDES = 8
 """Places about a marker at which a vehicle may stop."""
 SHUNNED = 20.0  # s, after which a marker that could not be reached is tried again: maps grow
+MOVED = 0.5  # m that a marker may be elsewhere than was thought, before who goes there is sent anew
 AWAY_FOR = 10.0  # s that all vehicles do something else, after which the task has failed
 
 
@@ -26,6 +27,8 @@ class _Visitor:
     engage: EngageAction
     is_engaged: bool = False
     marker: FoundMarker | None = None
+    aim: Point = (0.0, 0.0)
+    """Where the marker was taken to be."""
     places: list[Point] = field(default_factory=list)
     """Where it may stop, that have not been asked for yet."""
     ticket: PendingRequest | None = None
@@ -79,6 +82,7 @@ class VisitFoundAction:
         found = now.found(self._finders)
         for name, visitor in self._visitors.items():
             self._step_one(now, name, visitor)
+            self._look_again(now, name, visitor, found)
             self._pass_by(now, name, visitor, found)
         self._share_out(now, found)
         self.reason = "; ".join([f"{len(self._visited)} of {self._count} visited, {len(found)} found", *self._headings(), *self._out()])
@@ -118,13 +122,22 @@ class VisitFoundAction:
             elif visitor.marker is not None:
                 self._ask(now, name, visitor, visitor.marker)
 
+    def _look_again(self, now: TeamSituation, name: str, visitor: _Visitor, found: list[FoundMarker]) -> None:
+        """Sends a vehicle anew that goes to a marker which it sees elsewhere than others have told."""
+        going = visitor.marker
+        seen = next((marker for marker in found if going is not None and marker.is_of(going)), None)
+        here = now.place(name)
+        if seen is not None and here is not None and dist(seen.place_for(name), visitor.aim) > MOVED:
+            visitor.drop(now)
+            self._send(name, visitor, seen, here[:2])
+
     def _pass_by(self, now: TeamSituation, name: str, visitor: _Visitor, found: list[FoundMarker]) -> None:
         """Who comes as near to a marker as it would stop has visited it, wherever it goes; nobody goes there any more."""
         here = now.place(name)
         if here is None or not visitor.takes_part:
             return
         for marker in found:
-            if dist(here[:2], marker.place) <= self._near and not any(marker.is_of(other) for other in self._visited):
+            if dist(here[:2], marker.place_for(name)) <= self._near and not any(marker.is_of(other) for other in self._visited):
                 self._visited.append(marker)
                 for other in self._visitors.values():
                     if other.marker is not None and marker.is_of(other.marker):
@@ -141,14 +154,18 @@ class VisitFoundAction:
     def _share_out(self, now: TeamSituation, found: list[FoundMarker]) -> None:
         """Markers to which nobody goes to those who are free, the shortest way first."""
         free = {name: place[:2] for name, v in self._visitors.items() if v.is_free and (place := now.place(name)) is not None}
-        ways = sorted((dist(here, marker.place), name, k) for name, here in free.items() for k, marker in enumerate(found))
+        ways = sorted((dist(here, marker.place_for(name)), name, k) for name, here in free.items() for k, marker in enumerate(found))
         for _, name, k in ways:
             visitor, marker = self._visitors[name], found[k]
             visitor.shunned = [(other, until) for other, until in visitor.shunned if now.t < until]
             taken = [*self._visited, *(v.marker for v in self._visitors.values() if v.marker is not None)]
             left_out = [*taken, *(other for other, _ in visitor.shunned)]
             if visitor.marker is None and not any(marker.is_of(other) for other in left_out):
-                visitor.marker, visitor.places = marker, self._about(marker.place, free[name])
+                self._send(name, visitor, marker, free[name])
+
+    def _send(self, name: str, visitor: _Visitor, marker: FoundMarker, here: Point) -> None:
+        visitor.marker, visitor.aim = marker, marker.place_for(name)
+        visitor.places = self._about(visitor.aim, here)
 
     def _about(self, marker: Point, here: Point) -> list[Point]:
         """Places about a marker at which to stop, those on this side first."""

@@ -44,6 +44,32 @@ def test_a_marker_found_by_two_is_visited_once(team):
     assert [vehicle for vehicle, *_ in goals(team)] == ["anne"]
 
 
+def test_who_sees_a_marker_elsewhere_than_it_was_told_goes_where_it_sees_it(team):
+    team.find("carl", (4.2, 1.3))
+    team.step(5)
+    team.find("anne", (4.3, 1.4))
+    team.step(5)
+    assert goals(team) == [("anne", 3.2, 1.3)]
+    team.find("anne", (6.2, 1.3))  # the error of its own pose
+    team.step(5)
+    assert goals(team) == [("anne", 3.2, 1.3), ("anne", 5.2, 1.3)]
+    assert team.requests().count("cancel anne") == 1
+    team.places["anne"] = (4.2, 1.3)
+    team.step(10)
+    assert team.tasks.tasks[0].reason.startswith("0 of 2 visited, 1 found")
+    team.places["anne"] = (5.3, 1.3)
+    team.step(10)
+    assert team.tasks.tasks[0].reason.startswith("1 of 2 visited, 1 found")
+
+
+def test_of_two_that_may_be_the_same_the_nearest_is(team):
+    team.find("carl", (4.2, 1.3), (6.2, 1.3))
+    team.find("anne", (5.9, 1.3))
+    team.step(5)
+    assert sorted(goals(team)) == [("anne", 3.2, 1.3), ("bert", 6.7, 2.16)]
+    assert "2 found" in team.tasks.tasks[0].reason
+
+
 def test_who_has_been_somewhere_goes_to_the_next(team):
     team.find("carl", (4.2, 1.3))
     team.step(5)
