@@ -21,11 +21,13 @@ from uvf.runtime.messages.frames import FrameBuffer
 from uvf.runtime.messages.maps.height_grids import heights_message, heights_of
 from uvf.sensors.fitted import sweeping_of
 from uvf.slam.elevation.elevation_map import Elevation, ElevationMap, MapFull
+from uvf.slam.elevation.strip_adjustment import StripAdjustment
 
 Floats = NDArray[np.float64]
 
 LAYER = "heights"
 LARGEST = 2.5  # m, of the radius that a vehicle may say it has
+PASS = 5.0  # s, after which what is drawn is of an earlier pass
 ABOUT = 0.6  # m about who drives, as far as it may have moved since it told where it is
 
 
@@ -71,6 +73,7 @@ class ElevationService(Service):
         self.params = params
         self._lidar = lidar
         self._map = ElevationMap(params.resolution, params.gate)
+        self._strips = StripAdjustment()
         self._waiting = WaitingBeams()
         self._changed = False
         self._published_at = float("-inf")
@@ -106,9 +109,12 @@ class ElevationService(Service):
     def _insert(self, t: float, frames: FrameBuffer, drivers: Floats) -> list[Event]:
         """drivers: (n, 3) x, y, radius [m, world] of what is no ground, for it drives there."""
         try:
-            for placed in self._waiting.in_world(t, frames):
-                on_them = (cdist(placed.ends[:, :2], drivers[:, :2]) < drivers[:, 2]).any(axis=1)
-                self._map.insert(placed.ends[~on_them])
+            placed = list(self._waiting.in_world(t, frames))
+            sweeps = [each.ends[~(cdist(each.ends[:, :2], drivers[:, :2]) < drivers[:, 2]).any(axis=1)] for each in placed]
+            drawn = [self._map.surface(sweep, t - PASS) for sweep in sweeps]
+            raises = self._strips.raises(t, [each.origin for each in placed], sweeps, drawn)
+            for sweep, raised in zip(sweeps, raises, strict=True):
+                self._map.insert(sweep, t, raised)
                 self._changed = True
         except MapFull as error:
             self._waiting.clear()

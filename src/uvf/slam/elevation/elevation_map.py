@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from uvf.maths.compiled import compiled
 
@@ -15,6 +16,8 @@ Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Counts = NDArray[np.int32]
 
+SMOOTH = 10.0
+"""m, over which what points were raised by is averaged: no pass knows the height better than another one."""
 GROW = 64  # columns that the map grows by, so that it seldom does
 MOST_COLUMNS, LONGEST = 3_900_000, 6_200
 """Of a map that still goes into one message and into a log: 31 MB of heights, and so many columns along a side."""
@@ -59,16 +62,38 @@ class ElevationMap:
         self._low = np.zeros(2, dtype=np.int64)
         self._heights = np.empty((0, 0, 2), dtype=np.float64)
         self._counts = np.empty((0, 0, 2), dtype=np.int32)
+        self._hit_at = np.empty((0, 0), dtype=np.float32)
+        self._raised = np.empty((0, 0, 2), dtype=np.float32)
 
-    def insert(self, points: Floats) -> None:
-        """Points (n, 3) [m] that were hit; those that are not finite are left out. Raises MapFull, and takes none of them then."""
-        points = points[np.isfinite(points).all(axis=1)]
+    def surface(self, points: Floats, before: float) -> Floats:
+        """(n,) height [m] of ground or top, the nearer one, at each of the points (n, 3) [m]; NaN unless last hit before ``before`` [s]."""
+        found = np.full(len(points), np.nan)
+        finite = np.flatnonzero(np.isfinite(points).all(axis=1))
+        column, row = (np.floor(points[finite, :2] / self.resolution).astype(np.int64) - self._low).T
+        rows, columns = self._hit_at.shape
+        inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+        finite, column, row = finite[inside], column[inside], row[inside]
+        known = (self._counts[row, column, 0] > 0) & (self._hit_at[row, column] < before)
+        finite, heights = finite[known], self._heights[row[known], column[known]]
+        nearer = np.abs(heights - points[finite, 2:]).argmin(axis=1)
+        found[finite] = heights[np.arange(len(heights)), nearer]
+        return found
+
+    def insert(self, points: Floats, t: float = -np.inf, raised: Floats | None = None) -> None:
+        """Points (n, 3) [m] that were hit at ``t`` [s]; those that are not finite are left out.
+
+        raised: (n,) [m], by so much they are drawn higher, to fit what was drawn before. Raises MapFull, and takes none of them then.
+        """
+        finite = np.isfinite(points).all(axis=1)
+        points, by = points[finite], np.zeros(int(finite.sum())) if raised is None else raised[finite]
         if not len(points):
             return
         cells = np.floor(points[:, :2] / self.resolution).astype(np.int64)
         self._make_room(cells.min(axis=0), cells.max(axis=0) + 1)
         cells -= self._low
-        _fuse(self._heights, self._counts, cells, np.ascontiguousarray(points[:, 2]), self.gate)
+        _fuse(self._heights, self._counts, cells, points[:, 2] + by, self.gate)
+        _average(self._raised, cells, by)
+        self._hit_at[cells[:, 1], cells[:, 0]] = t
 
     def elevation(self) -> Elevation | None:
         """The map as far as anything was hit; None while nothing was. The rest of the grid is left out."""
@@ -77,7 +102,8 @@ class ElevationMap:
             return None
         rows, columns = (np.flatnonzero(hit.any(axis=axis)) for axis in (1, 0))
         window = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-        ground, top = (np.where(hit[window], self._heights[(*window, k)], np.nan).astype(np.float32) for k in (0, 1))
+        datum = _smooth(self._raised[window], SMOOTH / self.resolution)
+        ground, top = (np.where(hit[window], self._heights[(*window, k)] - datum, np.nan).astype(np.float32) for k in (0, 1))
         x, y = ((self._low + np.array((columns[0], rows[0]))) * self.resolution).tolist()
         return Elevation(top, ground, self.resolution, x, y)
 
@@ -99,11 +125,31 @@ class ElevationMap:
         if rows * columns > MOST_COLUMNS or max(rows, columns) > LONGEST:
             raise MapFull(f"the map would have {rows} x {columns} columns; {MOST_COLUMNS} are possible, {LONGEST} along a side")
         heights, counts = np.zeros((rows, columns, 2)), np.zeros((rows, columns, 2), dtype=np.int32)
+        hit_at, raised = np.zeros((rows, columns), dtype=np.float32), np.zeros((rows, columns, 2), dtype=np.float32)
         if size.all():
             column, row = self._low - low
             window = slice(row, row + size[1]), slice(column, column + size[0])
             heights[window], counts[window] = self._heights, self._counts
-        self._low, self._heights, self._counts = low, heights, counts
+            hit_at[window], raised[window] = self._hit_at, self._raised
+        self._low, self._heights, self._counts, self._hit_at, self._raised = low, heights, counts, hit_at, raised
+
+
+def _smooth(raised: Singles, side: float) -> Floats:
+    """(rows, columns) [m] by how much points about each column were raised on the average, within about ``side`` columns."""
+    sums = np.asarray(raised, dtype=np.float64)
+    for _ in range(2):
+        sums = ndimage.uniform_filter(sums, size=(2 * round(side / 2) + 1,) * 2 + (1,), mode="constant")
+    smooth: Floats = sums[:, :, 0] / np.maximum(sums[:, :, 1], 1e-9)
+    return smooth
+
+
+@compiled
+def _average(raised: Singles, cells: NDArray[np.int64], by: Floats) -> None:
+    """raised: (rows, columns, 2) sum over passes of what points were raised by, and of how many; cells: (n, 2) column and row."""
+    for i in range(len(by)):
+        column, row = cells[i]
+        raised[row, column, 0] += by[i]
+        raised[row, column, 1] += 1.0
 
 
 @compiled
