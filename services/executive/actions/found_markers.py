@@ -1,21 +1,26 @@
-"""Markers that are visited as they are found: who is free goes to the nearest one to which nobody goes."""
+"""Markers that are visited as they are found, shared out so that the last one is visited early."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from math import atan2, cos, dist, pi, sin
+from math import dist, inf
+from statistics import median
+
+import numpy as np
 
 from schemas.messages import Mode
 from services.executive.actions.action import EngageAction, Failed, first_refusal
+from services.executive.actions.approaching import Approach
 from services.executive.actions.driving import GoalAction
-from services.executive.actions.visiting import preview_request
-from services.executive.asking import PendingRequest
 from services.executive.situation import FoundMarker, TeamSituation
+from uvf.planning.assignment import assign
 
 Point = tuple[float, float]
 
-SIDES = 8
-"""Places about a marker at which a vehicle may stop."""
-SHUNNED = 20.0  # s, after which a marker that could not be reached is tried again: maps grow
+SHUNNED = 10.0  # s, after which a marker that could not be reached is tried again: maps grow
+AGAIN = 3.0  # s, after which it is asked again who goes where, while somebody is free
+LOOKED_AT = 12
+"""Markers that a vehicle's planner is asked for at once, the nearest ones."""
+PACE = 2.0  # s/m, while no planner has told how long a way takes
 MOVED = 0.5  # m that a marker may be elsewhere than was thought, before who goes there is sent anew
 AWAY_FOR = 10.0  # s that all vehicles do something else, after which the task has failed
 
@@ -26,12 +31,7 @@ class _Visitor:
 
     engage: EngageAction
     is_engaged: bool = False
-    marker: FoundMarker | None = None
-    aim: Point = (0.0, 0.0)
-    """Where the marker was taken to be."""
-    places: list[Point] = field(default_factory=list)
-    """Where it may stop, that have not been asked for yet."""
-    ticket: PendingRequest | None = None
+    way: Approach | None = None
     goal: GoalAction | None = None
     shunned: list[tuple[FoundMarker, float]] = field(default_factory=list)
     """Markers that it could not reach, each until a time [s]."""
@@ -48,14 +48,26 @@ class _Visitor:
     @property
     def is_free(self) -> bool:
         """Whether it may be sent to a marker."""
-        return self.takes_part and self.marker is None
+        return self.takes_part and self.way is None
+
+    def goes_to(self, marker: FoundMarker) -> bool:
+        """Whether it is on its way to a marker."""
+        return self.way is not None and marker.is_of(self.way.marker)
+
+    def shuns(self, marker: FoundMarker, t: float) -> bool:
+        """Whether it could not reach a marker a short while ago."""
+        return any(t < until and marker.is_of(other) for other, until in self.shunned)
+
+    def send(self, now: TeamSituation, way: Approach, place: Point) -> None:
+        """It goes to a marker, and stops at ``place``."""
+        self.way, self.goal = way, GoalAction(way.vehicle, place, None)
+        self.goal.begin(now)
 
     def drop(self, now: TeamSituation) -> None:
         """It goes to no marker any more."""
-        now.desk.drop(self.ticket)
         if self.goal is not None:
             self.goal.stop(now)
-        self.marker, self.ticket, self.goal, self.places = None, None, None, []
+        self.way, self.goal = None, None
 
 
 class VisitFoundAction:
@@ -68,11 +80,14 @@ class VisitFoundAction:
         self._vehicles, self._finders, self._count, self._near = vehicles, finders, count, near
         self._visitors: dict[str, _Visitor] = {}
         self._visited: list[FoundMarker] = []
+        self._ways: list[Approach] = []
+        """Those that are being asked for."""
+        self._again = 0.0
         self.reason = ""
 
     def begin(self, now: TeamSituation) -> None:
         """Begins with nothing visited."""
-        self._visited = []
+        self._visited, self._ways, self._again = [], [], 0.0
         self._visitors = {name: _Visitor(EngageAction(name, Mode.MODE_MISSION)) for name in self._vehicles}
         for visitor in self._visitors.values():
             visitor.engage.begin(now)
@@ -100,6 +115,9 @@ class VisitFoundAction:
 
     def stop(self, now: TeamSituation) -> None:
         """Asks no more; who is under way to a marker stops."""
+        for way in self._ways:
+            way.drop(now)
+        self._ways = []
         for visitor in self._visitors.values():
             visitor.engage.stop(now)
             visitor.drop(now)
@@ -117,19 +135,14 @@ class VisitFoundAction:
             visitor.away_since = now.t if visitor.away_since is None else visitor.away_since
         else:
             visitor.away_since = None
-            if visitor.goal is not None and visitor.marker is not None:
-                self._drive(now, visitor, visitor.goal, visitor.marker)
-            elif visitor.marker is not None:
-                self._ask(now, name, visitor, visitor.marker)
+            if visitor.goal is not None and visitor.way is not None:
+                self._drive(now, visitor, visitor.goal, visitor.way.marker)
 
     def _look_again(self, now: TeamSituation, name: str, visitor: _Visitor, found: list[FoundMarker]) -> None:
-        """Sends a vehicle anew that goes to a marker which it sees elsewhere than others have told."""
-        going = visitor.marker
-        seen = next((marker for marker in found if going is not None and marker.is_of(going)), None)
-        here = now.place(name)
-        if seen is not None and here is not None and dist(seen.place_for(name), visitor.aim) > MOVED:
+        """Who sees the marker to which it goes elsewhere than others have told is sent anew."""
+        seen = next((marker for marker in found if visitor.goes_to(marker)), None)
+        if seen is not None and visitor.way is not None and dist(seen.place_for(name), visitor.way.aim) > MOVED:
             visitor.drop(now)
-            self._send(name, visitor, seen, here[:2])
 
     def _pass_by(self, now: TeamSituation, name: str, visitor: _Visitor, found: list[FoundMarker]) -> None:
         """Who comes as near to a marker as it would stop has visited it, wherever it goes; nobody goes there any more."""
@@ -140,11 +153,11 @@ class VisitFoundAction:
             if dist(here[:2], marker.place_for(name)) <= self._near and not any(marker.is_of(other) for other in self._visited):
                 self._visited.append(marker)
                 for other in self._visitors.values():
-                    if other.marker is not None and marker.is_of(other.marker):
+                    if other.goes_to(marker):
                         other.drop(now)
 
     def _headings(self) -> list[str]:
-        going = [(name, visitor.marker.place) for name, visitor in self._visitors.items() if visitor.marker is not None]
+        going = [(name, visitor.way.marker.place) for name, visitor in self._visitors.items() if visitor.way is not None]
         return [f"{name} goes to ({x:.0f}, {y:.0f})" for name, (x, y) in going]
 
     def _out(self) -> list[str]:
@@ -152,40 +165,68 @@ class VisitFoundAction:
         return [v.lost or f"{name} does something else" for name, v in self._visitors.items() if v.lost or v.away_since is not None]
 
     def _share_out(self, now: TeamSituation, found: list[FoundMarker]) -> None:
-        """Markers to which nobody goes to those who are free, the shortest way first."""
-        free = {name: place[:2] for name, v in self._visitors.items() if v.is_free and (place := now.place(name)) is not None}
-        ways = sorted((dist(here, marker.place_for(name)), name, k) for name, here in free.items() for k, marker in enumerate(found))
-        for _, name, k in ways:
-            visitor, marker = self._visitors[name], found[k]
-            visitor.shunned = [(other, until) for other, until in visitor.shunned if now.t < until]
-            taken = [*self._visited, *(v.marker for v in self._visitors.values() if v.marker is not None)]
-            left_out = [*taken, *(other for other, _ in visitor.shunned)]
-            if visitor.marker is None and not any(marker.is_of(other) for other in left_out):
-                self._send(name, visitor, marker, free[name])
+        """Asks the planners of who is free for the ways to markers to which nobody goes, and then sends each to the first of its own."""
+        for way in self._ways:
+            if not self._visitors[way.vehicle].is_free or not self._is_open(way.marker):
+                way.drop(now)
+        self._ways = [way for way in self._ways if self._visitors[way.vehicle].is_free and self._is_open(way.marker)]
+        if not self._ways and now.t >= self._again:
+            self._ways = self._new_ways(now, [marker for marker in found if self._is_open(marker)])
+        known = [way.step(now) for way in self._ways]
+        if self._ways and all(known):
+            self._again = now.t if self._send(now) else now.t + AGAIN
+            self._ways = []
 
-    def _send(self, name: str, visitor: _Visitor, marker: FoundMarker, here: Point) -> None:
-        visitor.marker, visitor.aim = marker, marker.place_for(name)
-        visitor.places = self._about(visitor.aim, here)
+    def _is_open(self, marker: FoundMarker) -> bool:
+        """Whether nobody has been there, and nobody goes there."""
+        return not any(marker.is_of(other) for other in self._visited) and not any(v.goes_to(marker) for v in self._visitors.values())
 
-    def _about(self, marker: Point, here: Point) -> list[Point]:
-        """Places about a marker at which to stop, those on this side first."""
-        side = atan2(here[1] - marker[1], here[0] - marker[0])
-        turns = sorted((2 * pi * k / SIDES for k in range(SIDES)), key=lambda turn: min(turn, 2 * pi - turn))
-        return [(marker[0] + self._near * cos(side + turn), marker[1] + self._near * sin(side + turn)) for turn in turns]
+    def _new_ways(self, now: TeamSituation, markers: list[FoundMarker]) -> list[Approach]:
+        ways = []
+        for name, visitor in self._visitors.items():
+            here = now.place(name)
+            if visitor.is_free and here is not None:
+                new = [Approach(name, marker, self._near, here[:2]) for marker in markers if not visitor.shuns(marker, now.t)]
+                ways += sorted(new, key=lambda way: dist(way.here, way.aim))[:LOOKED_AT]
+        return ways
 
-    def _ask(self, now: TeamSituation, name: str, visitor: _Visitor, marker: FoundMarker) -> None:
-        """Asks for one place after the other, until there is a way."""
-        ticket = visitor.ticket
-        if ticket is None and not visitor.places:
-            visitor.shunned.append((marker, now.t + SHUNNED))
-            visitor.drop(now)
-        elif ticket is None:
-            visitor.ticket = now.desk.ask("preview", name, preview_request(None, visitor.places[0]), patience=0.0)
-        elif ticket.accepted:
-            visitor.goal, visitor.ticket = GoalAction(name, visitor.places[0], None), None
-            visitor.goal.begin(now)
-        elif ticket.refused:
-            visitor.places, visitor.ticket = visitor.places[1:], None
+    def _send(self, now: TeamSituation) -> bool:
+        """By tours over all that is open, of who is under way, too, from where it goes: it may be sooner there than who is free.
+
+        Returns whether anybody was sent.
+        """
+        for way in self._ways:
+            if way.place is None:
+                self._visitors[way.vehicle].shunned.append((way.marker, now.t + SHUNNED))
+        markers: list[FoundMarker] = []
+        for way in self._ways:
+            if way.place is not None and not any(way.marker.is_of(other) for other in markers):
+                markers.append(way.marker)
+        names = [name for name, visitor in self._visitors.items() if visitor.takes_part and now.place(name) is not None]
+        if not markers:
+            return False
+        asked = [(way, dist(way.here, way.place)) for way in self._ways if way.place is not None]
+        pace = median([way.duration / length for way, length in asked if length > self._near] or [PACE])
+        between = pace * np.array([[dist(a.place, b.place) for b in markers] for a in markers])
+        to_markers = np.array([[self._time(now, name, marker, pace) for marker in markers] for name in names])
+        sent = False
+        for name, tour in zip(names, assign(to_markers, between).tours, strict=True):
+            first = self._way(name, markers[tour[0]]) if tour else None
+            if first is not None and first.place is not None:
+                self._visitors[name].send(now, first, first.place)
+                sent = True
+        return sent
+
+    def _way(self, name: str, marker: FoundMarker) -> Approach | None:
+        return next((way for way in self._ways if way.vehicle == name and marker.is_of(way.marker)), None)
+
+    def _time(self, now: TeamSituation, name: str, marker: FoundMarker, pace: float) -> float:
+        """s until a vehicle could be at a marker."""
+        under_way, here = self._visitors[name].way, now.place(name)
+        if under_way is not None and here is not None:
+            return pace * (dist(here[:2], under_way.aim) + dist(under_way.aim, marker.place))
+        way = self._way(name, marker)
+        return way.duration if way is not None else inf
 
     def _drive(self, now: TeamSituation, visitor: _Visitor, goal: GoalAction, marker: FoundMarker) -> None:
         try:

@@ -1,5 +1,6 @@
 """A team of vehicles that do what the executive asks of them, in a step or two, without a bus."""
 
+from math import dist
 from pathlib import Path
 
 from schemas.messages import (
@@ -88,7 +89,8 @@ class Team:
         why = self.refusals.get((name, vehicle), "")
         reply = Reply(accepted=not why, reason=why)
         if name == "preview":
-            reply = PreviewReply(accepted=not why, reason=why, duration=1.0)
+            begin = (message.start.x, message.start.y) if message.HasField("start") else self.places[vehicle]
+            reply = PreviewReply(accepted=not why, reason=why, duration=dist(begin, (message.position.x, message.position.y)))
         elif name == "get_map":
             reply = MapReply(accepted=not why, reason=why, grid=self.map)
         self._answers.setdefault(name, []).append(Answer(vehicle, message, reply))

@@ -221,3 +221,25 @@ def test_who_passes_by_a_marker_has_visited_it_and_who_was_on_its_way_there_stop
     team.step(12)
     assert "1 of 2 visited" in team.tasks.tasks[0].reason and "bert goes to (5, 4)" in team.tasks.tasks[0].reason
     assert "cancel anne" in team.requests() and "cancel bert" not in team.requests()
+
+
+def test_a_marker_is_left_to_who_is_sooner_there_although_it_still_goes_somewhere_else(team):
+    team.find("carl", (8.0, 7.4))
+    team.step(8)
+    assert [vehicle for vehicle, *_ in goals(team)] == ["bert"]
+    team.find("carl", (8.0, 7.4), (9.2, 5.0))
+    team.step(50)
+    assert [vehicle for vehicle, *_ in goals(team)] == ["bert"]
+    team.arrive("bert")
+    team.places["bert"] = (8.0, 6.4)
+    team.step(50)
+    assert [vehicle for vehicle, *_ in goals(team)] == ["bert", "bert"]
+
+
+def test_each_takes_what_lies_on_its_own_side_and_the_near_ones_first(tmp_path):
+    team = Team(VISIT.replace("COUNT", "4"), tmp_path)
+    team.places["anne"], team.places["bert"] = (1.0, 2.0), (1.0, 5.0)
+    team.step(10)
+    team.find("carl", (9.0, 1.0), (9.0, 6.0), (5.0, 1.0), (5.0, 6.0))
+    team.step(8)
+    assert sorted((vehicle, round(x), y > 3.5) for vehicle, x, y in goals(team)) == [("anne", 4, False), ("bert", 4, True)]

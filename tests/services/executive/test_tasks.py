@@ -230,10 +230,10 @@ def test_a_mission_that_is_not_there_fails(tmp_path):
 
 
 def test_places_are_shared_out_and_each_drives_its_tour(tmp_path):
-    team = Team("  - {name: visit, visit: {vehicle: team, places: [[1, 1], [2, 2], [3, 3]]}}\n", tmp_path)
+    team = Team("  - {name: visit, visit: {vehicle: team, places: [[1, 1], [2, 2], [7, 3]]}}\n", tmp_path)
     team.step(20)
     tours = {vehicle: [place.x for place in message.places] for name, vehicle, message in team.asked if name == "route"}
-    assert sorted(x for tour in tours.values() for x in tour) == [1.0, 2.0, 3.0]
+    assert sorted(x for tour in tours.values() for x in tour) == [1.0, 2.0, 7.0]
     assert set(tours) == {"anne", "bert"}
     for vehicle, tour in tours.items():
         team.nav[vehicle].route_at = len(tour) - 1
