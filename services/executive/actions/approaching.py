@@ -12,7 +12,7 @@ SIDES = 8
 """Places about a marker at which a vehicle may stop."""
 
 
-class Approach:
+class MarkerApproach:
     """Asks for one side after the other, that on which the vehicle is first, until there is a way."""
 
     def __init__(self, vehicle: str, marker: FoundMarker, near: float, here: Point) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from schemas.messages import Mode
 from services.executive.actions.action import EngageAction, Failed, first_refusal
-from services.executive.actions.approaching import Approach
+from services.executive.actions.approaching import MarkerApproach
 from services.executive.actions.driving import GoalAction
 from services.executive.situation import FoundMarker, TeamSituation
 from uvf.planning.assignment import assign
@@ -31,7 +31,7 @@ class _Visitor:
 
     engage: EngageAction
     is_engaged: bool = False
-    way: Approach | None = None
+    way: MarkerApproach | None = None
     goal: GoalAction | None = None
     shunned: list[tuple[FoundMarker, float]] = field(default_factory=list)
     """Markers that it could not reach, each until a time [s]."""
@@ -58,7 +58,7 @@ class _Visitor:
         """Whether it could not reach a marker a short while ago."""
         return any(t < until and marker.is_of(other) for other, until in self.shunned)
 
-    def send(self, now: TeamSituation, way: Approach, place: Point) -> None:
+    def send(self, now: TeamSituation, way: MarkerApproach, place: Point) -> None:
         """It goes to a marker, and stops at ``place``."""
         self.way, self.goal = way, GoalAction(way.vehicle, place, None)
         self.goal.begin(now)
@@ -80,7 +80,7 @@ class VisitFoundAction:
         self._vehicles, self._finders, self._count, self._near = vehicles, finders, count, near
         self._visitors: dict[str, _Visitor] = {}
         self._visited: list[FoundMarker] = []
-        self._ways: list[Approach] = []
+        self._ways: list[MarkerApproach] = []
         """Those that are being asked for."""
         self._again = 0.0
         self.reason = ""
@@ -181,12 +181,12 @@ class VisitFoundAction:
         """Whether nobody has been there, and nobody goes there."""
         return not any(marker.is_of(other) for other in self._visited) and not any(v.goes_to(marker) for v in self._visitors.values())
 
-    def _new_ways(self, now: TeamSituation, markers: list[FoundMarker]) -> list[Approach]:
+    def _new_ways(self, now: TeamSituation, markers: list[FoundMarker]) -> list[MarkerApproach]:
         ways = []
         for name, visitor in self._visitors.items():
             here = now.place(name)
             if visitor.is_free and here is not None:
-                new = [Approach(name, marker, self._near, here[:2]) for marker in markers if not visitor.shuns(marker, now.t)]
+                new = [MarkerApproach(name, marker, self._near, here[:2]) for marker in markers if not visitor.shuns(marker, now.t)]
                 ways += sorted(new, key=lambda way: dist(way.here, way.aim))[:LOOKED_AT]
         return ways
 
@@ -217,7 +217,7 @@ class VisitFoundAction:
                 sent = True
         return sent
 
-    def _way(self, name: str, marker: FoundMarker) -> Approach | None:
+    def _way(self, name: str, marker: FoundMarker) -> MarkerApproach | None:
         return next((way for way in self._ways if way.vehicle == name and marker.is_of(way.marker)), None)
 
     def _time(self, now: TeamSituation, name: str, marker: FoundMarker, pace: float) -> float:
