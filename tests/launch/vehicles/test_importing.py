@@ -1,5 +1,7 @@
 """Robots of others become folders without faults that drive; what was dropped or guessed is told."""
 
+import shutil
+
 import numpy as np
 import pytest
 import trimesh
@@ -117,6 +119,27 @@ def test_a_base_footprint_below_base_link_is_not_doubled(tmp_path):
     notes = import_one(tmp_path, "bare", ("</robot>", foot))
     assert any("frames without mass or shape dropped: base_footprint" in line for line in notes)
     assert "base_footprint" not in (tmp_path / "vehicles" / "it" / "it.urdf").read_text()
+
+
+def weight(folder):
+    model = load_urdf(folder / "it.urdf")
+    return sum(link.inertial.mass for link in model.links.values() if link.inertial is not None)
+
+
+def test_a_body_whose_mass_stands_in_a_frame_of_its_own_is_not_given_more(tmp_path):
+    """As the Husky has it: 46 kg in inertial_link, which has no shape, and none in base_link and the plate on it, which have shapes."""
+    tensor = '<inertia ixx="0.6" ixy="0" ixz="0" iyy="1.7" iyz="0" izz="2.0"/>'
+    mass = (
+        f'<link name="inertial_link"><inertial><mass value="46"/>{tensor}</inertial></link><joint name="m" type="fixed">'
+        '<parent link="telaio"/><child link="inertial_link"/><origin xyz="-0.05 0 0.02"/></joint></robot>'
+    )
+    without = import_one(tmp_path, "bare")
+    assert any("masses guessed from the size of the shapes; weigh them: base_link" in line for line in without)
+    shutil.rmtree(tmp_path / "vehicles")
+    notes = import_one(tmp_path, "bare", ("</robot>", mass))
+    assert not any("masses guessed" in line and "base_link" in line for line in notes)
+    assert 46.0 < weight(tmp_path / "vehicles" / "it") < 48.0
+    assert inspect(tmp_path / "vehicles" / "it").faults == []
 
 
 def test_castors_that_swivel_are_no_skid_steer(tmp_path):

@@ -5,13 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from uvf.maths.se2 import Pose2, inverse, transform
+from uvf.maths.se2 import IDENTITY, Pose2, inverse, transform
 from uvf.slam.graph.drift import TIED, PathLengths
 from uvf.slam.graph.fitting import information_of
 from uvf.slam.graph.method import GraphSlam
 from uvf.slam.graph.motion import ALLOWANCE, LEAST_OFF, MotionNoise, OdometryMotion
+from uvf.slam.graph.tracker import LocalMap, Tracker
 from uvf.slam.graph.trust import Trust
+from uvf.slam.matching.cloud import cloud_of
 from uvf.slam.matching.imls import Match
+from uvf.slam.matching.point_map import point_map
 from uvf.slam.reading import Beams, Reading
 
 BEAMS = Beams((0.0, 0.0), np.radians(np.linspace(-135.0, 135.0, 541)), 0.1, 10.0)
@@ -117,3 +120,15 @@ def test_a_claim_counts_with_some_allowance_and_only_where_it_is_the_smaller_one
     usual, found = Trust().information(motion), Trust().information(replace(motion, claimed=claimed))
     for axis, said, least in ((0, claimed[0], LEAST_OFF[0]), (1, claimed[0], LEAST_OFF[0]), (2, claimed[1], LEAST_OFF[1])):
         assert found[axis, axis] ** -0.5 == pytest.approx(min(max(ALLOWANCE * said, least), usual[axis, axis] ** -0.5))
+
+
+def test_a_gyro_counts_beside_a_match_that_turns_the_sweep():
+    """A fence to one side and posts to the other: what little bends all sweeps alike, the gyro does not see."""
+    posts = np.column_stack((np.linspace(-5.0, 5.0, 21), np.full(21, 4.0), np.full(21, 0.4)))
+    seen, turned = (cloud_of(Reading(0.0, sweep(posts, Pose2(0.0, 0.0, yaw)), BEAMS, IDENTITY)) for yaw in (0.0, 0.01))
+    found = {}
+    for claimed in (None, (1e-3, 2e-4)):
+        motion = OdometryMotion(IDENTITY, IDENTITY, MotionNoise(), claimed=claimed)
+        found[claimed] = Tracker().track(LocalMap(point_map([seen])), motion, turned).match.map_from_base.yaw
+    assert found[None] > 0.005
+    assert abs(found[1e-3, 2e-4]) < 0.5 * found[None]

@@ -34,6 +34,14 @@ def test_what_it_loses_in_turns_is_learnt_apart():
     assert trust.heading_drift.straightened(Pose2(1.0, 0.0, 0.0)).yaw == pytest.approx(0.0, abs=1e-6)
 
 
+def test_a_gyro_is_not_set_straight_by_what_matches_have_in_common():
+    turn = Pose2(0.0, 0.0, 0.08)
+    trust = taught(Trust(), 100, -0.015, step=turn)
+    wheels, gyro = (OdometryMotion(IDENTITY, turn, NOISE, claimed=claimed) for claimed in (None, (1e-3, 2e-4)))
+    assert trust.straightened(wheels).step.yaw == pytest.approx(0.08 * 0.985, rel=0.003)
+    assert abs(trust.straightened(gyro).step.yaw - 0.08) < 0.1 * 0.015 * 0.08
+
+
 def test_another_floor_is_learnt_anew():
     trust = taught(taught(Trust(), 500, 0.02), 400, -0.02)
     assert trust.heading_drift.straightened(STEP).yaw == pytest.approx(-0.002, rel=0.1)

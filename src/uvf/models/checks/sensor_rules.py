@@ -1,13 +1,16 @@
 """Where a vehicle's sensors sit: in its tree of frames, above the floor, outside of its own body; a planar lidar level."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
-from uvf.maths.rotations import from_euler, rotate
+from uvf.maths.raycast import Rays, cast
+from uvf.maths.rotations import from_euler, matrix, rotate
 from uvf.maths.se3 import Transform
-from uvf.models.shapes.mesh import contains, placed
+from uvf.models.shapes.mesh import placed
+from uvf.models.shapes.scene import scene
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.vehicle.sensors import Lidar, Mount, Sensors
 from uvf.models.yaml_data import FileLocation, Key
@@ -16,7 +19,8 @@ APART = 0.03  # m, between a sensor's mount and the link of its name: the link m
 SUNK = 0.001  # m below the floor
 TILT = 0.035  # rad (2 deg), from which on the scan meets the floor or misses walls
 FARTHEST = 300.0  # m; scanners for surveys outdoors reach it
-LOOKS_AT = np.linspace(0.01, 1.0, 60)  # m along a beam
+OWN = 2.0  # m from the lidar, within which its own vehicle is
+SHUT = 0.95  # of the beams, from which on a lidar that they keep from the world sees nothing
 NEEDED = {"lidar": "preset: lds01, mount: {xyz: [0, 0, 0.2]}", "encoders": "hz: 50, ticks_per_turn: 4096"}
 SPOKEN = {"sonars": "sonar", "rangefinders": "range finder"}
 HOUSINGS = ("lidar", "laser", "scan", "hokuyo", "lds", "rplidar", "sick", "velodyne")
@@ -45,7 +49,9 @@ def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: FileL
             yield f"{place.at(*keys, 'mount')}: z {z:.4g} m is below the floor, which is z = 0 of base_link; raise it"
     if sensors.lidar is not None:
         yield from _lidar_faults(sensors.lidar, place.at("lidar"))
-        for link_name in _around(model, sensors.lidar, poses):
+        met = _links_met(model, sensors.lidar, poses)
+        if len(met) >= SHUT * sensors.lidar.beams:
+            link_name = Counter(met).most_common(1)[0][0]
             yield (
                 f"{place.at('lidar', 'mount')}: the lidar is inside the collision shape of link '{link_name}' and would see nothing else; "
                 "mount it outside"
@@ -70,18 +76,10 @@ def sensor_notes(model: UrdfModel, sensors: Sensors, poses: Poses, turning: set[
     for kind, example in NEEDED.items():
         if getattr(sensors, kind) is None:
             yield f"no {kind}: no mission takes it, for SLAM needs them; give it sensors: {kind}: {{{example}}}"
-    if sensors.lidar is None or next(_around(model, sensors.lidar, poses), None) is not None:
-        return
-    lidar, origin = sensors.lidar, np.array(sensors.lidar.mount.xyz)
-    solids = [placed(s, poses[n]) for n in poses if not _houses(model, n, lidar, poses) for s in model.links[n].collisions]
-    angles = lidar.angle_min + np.arange(0, lidar.beams, max(lidar.beams // 90, 1)) * lidar.angle_increment
-    blocked = 0
-    for angle in angles:
-        direction = rotate(from_euler(*lidar.mount.rpy), np.array((np.cos(angle), np.sin(angle), 0.0)))
-        points = origin + np.outer(LOOKS_AT[lidar.range_min <= LOOKS_AT], direction)
-        blocked += any(contains(solid, point) for solid in solids if solid.shape != "mesh" for point in points)
-    if blocked:
-        yield f"{100 * blocked / len(angles):.0f} % of the lidar's beams meet the vehicle's own body"
+    if sensors.lidar is not None:
+        share = len(_links_met(model, sensors.lidar, poses)) / sensors.lidar.beams
+        if 0.0 < share < SHUT:
+            yield f"{100 * share:.0f} % of the lidar's beams meet the vehicle's own body"
 
 
 def mounted(sensors: Sensors) -> Iterator[tuple[tuple[Key, ...], Any]]:
@@ -94,12 +92,15 @@ def mounted(sensors: Sensors) -> Iterator[tuple[tuple[Key, ...], Any]]:
         yield from (((kind, i), sensor) for i, sensor in enumerate(getattr(sensors, kind)))
 
 
-def _around(model: UrdfModel, lidar: Lidar, poses: Poses) -> Iterator[str]:
-    """The links, other than its housing, whose collision shapes the lidar is in."""
-    origin = np.array(lidar.mount.xyz)
-    for name in poses:
-        if not _houses(model, name, lidar, poses) and any(contains(placed(s, poses[name]), origin) for s in model.links[name].collisions):
-            yield name
+def _links_met(model: UrdfModel, lidar: Lidar, poses: Poses) -> list[str]:
+    """Of each beam that meets the vehicle's own body, other than the lidar's housing: the link that it meets first."""
+    angles = lidar.angle_min + np.arange(lidar.beams) * lidar.angle_increment
+    level = np.column_stack((np.cos(angles), np.sin(angles), np.zeros(len(angles))))
+    rays = Rays(np.array(lidar.mount.xyz), level @ matrix(from_euler(*lidar.mount.rpy)).T)
+    names = [name for name in poses if model.links[name].collisions and not _houses(model, name, lidar, poses)]
+    ranges = [cast(scene((placed(s, poses[name]) for s in model.links[name].collisions), None), [], rays, OWN) for name in names]
+    nearest = np.argmin(ranges, axis=0) if names else np.zeros(0, dtype=int)
+    return [names[link] for beam, link in enumerate(nearest) if np.isfinite(ranges[link][beam])]
 
 
 def _houses(model: UrdfModel, link: str, lidar: Lidar, poses: Poses) -> bool:

@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 from uvf.maths.se3 import IDENTITY, Transform, apply, compose, inverse
 from uvf.models.importing.drive_pair import DrivePair, WheelGuess, shapes_below
 from uvf.models.importing.inertia_guess import mended
-from uvf.models.importing.robot import Foreign, joined, moved
+from uvf.models.importing.robot import Foreign
 from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
-from uvf.models.urdf.robot import Joint, Link, UrdfModel
-from uvf.models.urdf.rules import RESERVED
+from uvf.models.urdf.inertia import joined, moved
+from uvf.models.urdf.robot import Inertial, Joint, Link, UrdfModel
+from uvf.models.urdf.rules import RESERVED, inertial_faults
 
 Floats = NDArray[np.float64]
 
@@ -59,8 +60,29 @@ def rebuilt(foreign: Foreign, pair: DrivePair) -> UrdfModel:
         foreign.notes.add("joints that move but drive nothing, held fast at zero", ", ".join(held))
     _lower_feet(parts, foreign)
     _lift_castors(parts, foreign)
-    links = {name: mended(link, name == BASE, foreign.notes) for name, link in parts.links.items()}
-    return UrdfModel(model.path, model.name, links, parts.joints)
+    return UrdfModel(model.path, model.name, _weighed(parts, foreign), parts.joints)
+
+
+def _weighed(parts: _Parts, foreign: Foreign) -> dict[str, Link]:
+    """Links with inertias that there can be. All but the wheels is one body: what its parts tell of their masses is all of it."""
+    body = {BASE: IDENTITY, **{j.child: j.parent_from_child for j in parts.joints.values() if j.kind == "fixed"}}
+    given = [moved(sound, body[name]) for name in body if (sound := _sound(parts.links[name], foreign)) is not None]
+    if not given:
+        return {name: mended(link, name == BASE, foreign.notes) for name, link in parts.links.items()}
+    shapes = {kind: tuple(placed(s, body[n]) for n in body for s in getattr(parts.links[n], kind)) for kind in ("visuals", "collisions")}
+    whole = mended(Link(BASE, joined(given), shapes["visuals"], shapes["collisions"]), True, foreign.notes)
+    return {
+        name: replace(link, inertial=whole.inertial if name == BASE else None) if name in body else mended(link, False, foreign.notes)
+        for name, link in parts.links.items()
+    }
+
+
+def _sound(link: Link, foreign: Foreign) -> Inertial | None:
+    """What a link tells of its mass, its inertia replaced where that is impossible; None where it tells nothing."""
+    told = link.inertial
+    if told is None or told.mass <= 0:
+        return None
+    return mended(link, True, foreign.notes).inertial if any(inertial_faults(told)) else told
 
 
 def _trunk(parts: _Parts, rest: list[str]) -> list[str]:

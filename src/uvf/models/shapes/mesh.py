@@ -45,19 +45,6 @@ def reach(solid: Solid, directions: Floats) -> Floats:
     return hull
 
 
-def contains(solid: Solid, point: Floats) -> bool:
-    """Whether a point (3,) [m] is inside the shape; a mesh counts as its convex hull."""
-    local = (point - solid.position) @ matrix(solid.orientation)
-    if solid.shape == "sphere":
-        return bool(np.linalg.norm(local) < solid.size[0])
-    if solid.shape == "box":
-        return bool((np.abs(local) < np.array(solid.size) / 2).all())
-    if solid.shape == "cylinder":
-        return bool(np.hypot(local[0], local[1]) < solid.size[0] and abs(local[2]) < solid.size[1] / 2)
-    hull = trimesh.Trimesh(*_own_triangles(solid), process=False).convex_hull
-    return bool((((local - hull.triangles_center) * hull.face_normals).sum(axis=1) < 0).all())
-
-
 def _own_triangles(solid: Solid) -> tuple[Floats, NDArray[Any]]:
     if solid.shape == "mesh":
         vertices, faces = load_mesh(solid.mesh or Path("?"))

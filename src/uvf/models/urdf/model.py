@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from uvf.models.generated_file import handed_file
+from uvf.models.urdf.inertia import joined, moved
 from uvf.models.urdf.reader import read_model
 from uvf.models.urdf.robot import Inertial, Link, UrdfModel
 from uvf.models.urdf.rules import model_faults, wheel_faults
@@ -62,9 +63,20 @@ def _state(path: Path) -> tuple[int, int]:
 @lru_cache(maxsize=64)
 def _written(path: Path, _changed: int, _size: int) -> Path:
     model = load_urdf(path)
-    links = {name: _with_mass(link) for name, link in model.links.items()}
+    links = {name: _with_mass(link) for name, link in _with_heavy_root(model).items()}
     text = urdf_text(replace(model, links=links), lambda mesh: str(mesh.resolve()))
     return handed_file(path.stem, ".urdf", text.encode())
+
+
+def _with_heavy_root(model: UrdfModel) -> dict[str, Link]:
+    """The links; where the root has no mass, it has that of what is fast to it: engines take little for heavy on light."""
+    root, poses = model.roots[0], model.link_poses()
+    body = model.rigid_with(root)
+    if model.links[root].inertial is not None:
+        return model.links
+    given = [moved(inertial, poses[name]) for name in sorted(body) if (inertial := model.links[name].inertial) is not None]
+    light = {name: replace(model.links[name], inertial=None) for name in body}
+    return {**model.links, **light, root: replace(model.links[root], inertial=joined(given))}
 
 
 def _with_mass(link: Link) -> Link:

@@ -38,13 +38,13 @@ def wheel_faults(model: UrdfModel, wheel_joints: tuple[str, ...]) -> Iterator[Mo
 
 
 def _inertia_faults(model: UrdfModel, link: Link) -> Iterator[str]:
-    """Without mass there may be frames and what only looks; whatever touches or turns has some."""
+    """What moves as one body has some mass, in one of its links."""
     if link.inertial is not None:
         yield from inertial_faults(link.inertial)
         return
     joint = model.parents.get(link.name)
     moves = joint is not None and joint.kind not in ("fixed", "")
-    if link.collisions or moves or all(model.links[name].inertial is None for name in model.rigid_with(link.name)):
+    if moves or all(model.links[name].inertial is None for name in model.rigid_with(link.name)):
         yield "give it <inertial> with <mass> and <inertia>"
 
 

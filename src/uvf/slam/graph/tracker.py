@@ -103,13 +103,18 @@ class Tracker:
             self.trust.learn(step, motion, found.map_from_base)
 
     def _found(self, local: LocalMap, motion: OdometryMotion, cloud: Cloud) -> Match:
-        known = self.trust.information(motion) if cloud.is_thin else motion.information
+        known = self.trust.information(motion) if cloud.is_thin else self._with_claimed_heading(motion)
         found = match(motion.guess, cloud, local.surfaces, known)
         if motion.told and not cloud.is_thin and not _plain(found):
             found = match(motion.guess, cloud, local.surfaces, self.trust.information(motion))
         if self._doubts(found) or _leaps(motion.guess, found.map_from_base) or _strays(motion, cloud):
             return self._searched(local, motion, cloud, found)
         return found
+
+    def _with_claimed_heading(self, motion: OdometryMotion) -> Floats:
+        """Information (3, 3) of a motion [1/m^2, 1/rad^2]: wheels slip, but a gyro knows its turn better than a sweep tells it."""
+        usual = motion.information
+        return usual if motion.claimed is None else np.maximum(usual, np.diag((0.0, 0.0, self.trust.information(motion)[2, 2])))
 
     def _doubts(self, found: Match) -> bool:
         return found.share < WELL * self.share or found.rms > LOOSE * self.rms

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2
-from uvf.slam.graph.motion import MotionNoise, OdometryMotion
+from uvf.slam.graph.motion import ALLOWANCE, MotionNoise, OdometryMotion
 
 Floats = NDArray[np.float64]
 
@@ -31,18 +31,18 @@ class Veering:
     Weighted least squares with a zero-mean prior, in which older steps fade.
     """
 
-    _normal: Floats = field(default_factory=PRIOR.copy)
+    _normal: Floats = field(default_factory=lambda: np.zeros((2, 2)))
     _right: Floats = field(default_factory=lambda: np.zeros(2))
 
-    def straightened(self, step: Pose2) -> Pose2:
-        """The step without the heading drift that is expected of it."""
-        return Pose2(step[0], step[1], step[2] + float(_ways(step) @ np.linalg.solve(self._normal, self._right)))
+    def straightened(self, step: Pose2, share: float = 1.0) -> Pose2:
+        """The step without the heading drift that is expected of it; share: of what is usual, that this odometry veers by at most [-]."""
+        return Pose2(step[0], step[1], step[2] + float(_ways(step) @ np.linalg.solve(PRIOR / share**2 + self._normal, self._right)))
 
     def learn(self, step: Pose2, off: float, sigma: float) -> None:
         """Learns from a step whose heading was off by ``off`` [rad], known to ``sigma`` [rad]."""
         ways = _ways(step)
         fading = exp(-float(np.abs(ways).sum()) / REMEMBERED)
-        self._normal = PRIOR + fading * (self._normal - PRIOR) + np.outer(ways, ways) / sigma**2
+        self._normal = fading * self._normal + np.outer(ways, ways) / sigma**2
         self._right = fading * self._right + ways * off / sigma**2
 
 
@@ -61,7 +61,7 @@ class Trust:
 
     def straightened(self, motion: OdometryMotion) -> OdometryMotion:
         """The motion without the heading drift that is expected of it."""
-        return replace(motion, step=self.heading_drift.straightened(motion.step)) if motion.told else motion
+        return replace(motion, step=self.heading_drift.straightened(motion.step, _veers(motion))) if motion.told else motion
 
     def learn(self, step: Pose2, motion: OdometryMotion, found: Pose2) -> None:
         """Learns from a matched pose ``found``. step: as the odometry told it; motion: as it was assumed."""
@@ -96,6 +96,13 @@ class Trust:
         """The noise by how far off this odometry usually is; what a turn adds is left as it is."""
         (p, q, r), (s, t, u) = noise.position, noise.heading
         return MotionNoise((self.position * p, self.position * q, r), (self.heading * s, self.heading * t, u))
+
+
+def _veers(motion: OdometryMotion) -> float:
+    """Share of the usual drift [-] that can be expected of an odometry: one with a gyro says how well it knows its turns."""
+    if motion.claimed is None:
+        return 1.0
+    return min(1.0, ALLOWANCE * motion.claimed[1] / motion.sigmas[1])
 
 
 def _off(motion: OdometryMotion, found: Pose2) -> Floats:

@@ -1,0 +1,31 @@
+"""Mass and inertia of several links as one body."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.rotations import matrix
+from uvf.maths.se3 import Transform, apply
+from uvf.models.urdf.robot import Inertial
+
+Floats = NDArray[np.float64]
+
+
+def moved(inertial: Inertial, a_from_b: Transform) -> Inertial:
+    """The same inertial seen from frame a."""
+    turn = matrix(a_from_b.rotation)
+    return Inertial(inertial.mass, apply(a_from_b, inertial.com[None])[0], turn @ inertial.inertia @ turn.T)
+
+
+def joined(parts: Sequence[Inertial]) -> Inertial | None:
+    """Several inertials of one frame as one (Steiner's theorem); None of none."""
+    mass = sum(p.mass for p in parts)
+    if not parts or mass <= 0:
+        return None
+    com: Floats = sum((p.mass * p.com for p in parts), np.zeros(3)) / mass
+    inertia = np.zeros((3, 3))
+    for part in parts:
+        arm = part.com - com
+        inertia += part.inertia + part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return Inertial(mass, com, inertia)
