@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from uvf.maths.rotations import to_euler
+from uvf.maths.rotations import rotate, to_euler
 from uvf.maths.se3 import Transform, compose
 from uvf.models.importing.robot import Foreign, ForeignSensor
 
@@ -21,24 +21,28 @@ NAMES = {
     "imu": ("imu",),
     "camera": ("camera", "kinect", "realsense", "astra", "zed"),
 }
+SEVERAL = {"sonar": "sonars", "range": "rangefinders"}
+"""Kinds of which a vehicle may have any number, and their sections."""
+LEVEL, FAR = 0.99, 30.0  # of the axis' z, and m
+NARROW, FEW = 0.6, 30  # rad and beams, below which rays are the cone of one reading
 LINK_KINDS = {"lidar": "ray", "imu": "imu", "camera": "camera"}
 
 
 def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> Section:
     """The ``sensors`` section of a vehicle file: what the robot carries, what its links' names tell of, and encoders, which all have."""
     section: Section = {}
-    for sensor in (*foreign.sensors, *_by_names(foreign)):
+    for sensor in sorted((*foreign.sensors, *_by_names(foreign)), key=lambda each: _rank(each, base_from_link)):
         kind, make = _kind(sensor)
         if make is None or sensor.link not in base_from_link:
             foreign.notes.add("sensors of a kind that is not simulated, dropped", f"{sensor.kind} on {sensor.link}")
-        elif kind == "sonar":
-            sonars = section.setdefault("sonars", [])
-            mount = _mount(compose(base_from_link[sensor.link], sensor.link_from_sensor))
-            sonars.append({"mount": mount, **make(sensor, foreign), "frame": f"{sensor.link}_sonar_{len(sonars) + 1}"})
+            continue
+        mount = _mount(compose(base_from_link[sensor.link], sensor.link_from_sensor))
+        if kind in SEVERAL:
+            all_of_it = section.setdefault(SEVERAL[kind], [])
+            all_of_it.append({"mount": mount, **make(sensor, foreign), "frame": f"{sensor.link}_{kind}_{len(all_of_it) + 1}"})
         elif kind in section:
             foreign.notes.add(f"a vehicle has one {kind}; the others dropped", sensor.link)
         else:
-            mount = _mount(compose(base_from_link[sensor.link], sensor.link_from_sensor))
             frame = sensor.link if _is_link_itself(sensor) else f"{sensor.link}_{kind}"
             section[kind] = {"mount": mount, **make(sensor, foreign), "frame": frame}
             if kind == "gnss":
@@ -46,6 +50,16 @@ def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> S
     foreign.notes.add("guessed: wheel encoders of 4096 ticks a turn at 50 Hz")
     section["encoders"] = {"hz": 50.0, "ticks_per_turn": 4096}
     return section
+
+
+def _rank(sensor: ForeignSensor, base_from_link: dict[str, Transform]) -> float:
+    """Of several lidars the one that sees most for SLAM is the first: level, about it, and far."""
+    if _kind(sensor)[0] != "lidar" or sensor.element is None or sensor.link not in base_from_link:
+        return 0.0
+    up = rotate(compose(base_from_link[sensor.link], sensor.link_from_sensor).rotation, np.array((0.0, 0.0, 1.0)))
+    beams, fan = _fan(sensor)
+    area = fan * min(_number(sensor, "range/max", 10.0), FAR) ** 2 * min(beams, 360)
+    return -area if abs(up[2]) > LEVEL else -1e-9
 
 
 def _by_names(foreign: Foreign) -> Iterator[ForeignSensor]:
@@ -63,6 +77,12 @@ def _kind(sensor: ForeignSensor) -> tuple[str, Callable[[ForeignSensor, Foreign]
     kind = sensor.kind.lower()
     if kind == "sonar" or (kind in LIDARS and _gives_one_range(sensor)):
         return "sonar", _sonar
+    if kind in LIDARS and sensor.element is not None and sensor.element.find(".//horizontal") is not None:
+        beams, fan = _fan(sensor)
+        if beams <= 1:
+            return "range", _range_finder
+        if fan < NARROW and beams < FEW:
+            return "sonar", _sonar
     if kind in LIDARS:
         return "lidar", _lidar
     if kind in CAMERAS:
@@ -111,6 +131,12 @@ def _rate(sensor: ForeignSensor, default: float, fastest: float, foreign: Foreig
     return min(rate, fastest)
 
 
+def _fan(sensor: ForeignSensor) -> tuple[float, float]:
+    """Beams of a level row, and the angle [rad] over which they lie."""
+    beams = _number(sensor, "horizontal/samples", 360) * _number(sensor, "horizontal/resolution", 1.0)
+    return beams, _number(sensor, "horizontal/max_angle", 2 * np.pi) - _number(sensor, "horizontal/min_angle", 0.0)
+
+
 def _lidar(sensor: ForeignSensor, foreign: Foreign) -> Section:
     if sensor.element is None or sensor.element.find(".//horizontal") is None:
         return {"preset": "lds01"}
@@ -129,6 +155,16 @@ def _lidar(sensor: ForeignSensor, foreign: Foreign) -> Section:
         "angle_increment": sweep / max(beams if sweep > 2 * np.pi - 0.1 / max(beams, 1) else beams - 1, 1) or 0.01,
         "range_min": max(_number(sensor, "range/min", 0.1), 0.0),
         "range_max": max(_number(sensor, "range/max", 10.0), 0.2),
+        "noise": abs(_number(sensor, "noise/stddev", 0.01)),
+    }
+
+
+def _range_finder(sensor: ForeignSensor, foreign: Foreign) -> Section:
+    low = max(_number(sensor, "range/min", 0.02), 0.0)
+    return {
+        "hz": _rate(sensor, 10.0, FASTEST, foreign),
+        "range_min": low,
+        "range_max": max(_number(sensor, "range/max", 4.0), low + 0.01),
         "noise": abs(_number(sensor, "noise/stddev", 0.01)),
     }
 
