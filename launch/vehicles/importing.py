@@ -14,11 +14,12 @@ from launch.vehicles.creation import check_new
 from launch.vehicles.importing_air import import_aircraft
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.se3 import compose
+from uvf.models.importing.controllers import limits_of_controllers
 from uvf.models.importing.drive_pair import DrivePair, find_pair
 from uvf.models.importing.jsbsim import jsbsim_model
 from uvf.models.importing.meshes import with_own_meshes
 from uvf.models.importing.rebuilt import rebuilt
-from uvf.models.importing.robot import Foreign
+from uvf.models.importing.robot import DriveLimits, Foreign
 from uvf.models.importing.sdf_robot import read_foreign_sdf
 from uvf.models.importing.sensors import sensors_section
 from uvf.models.importing.urdf import read_foreign_urdf
@@ -28,7 +29,9 @@ from uvf.models.urdf.writer import urdf_text
 from uvf.models.yaml_data import BadInput
 
 NOTES = "import.txt"
-SPEED = 0.5  # m/s
+SPEED, ACCELERATION = 0.5, 0.5  # m/s and m/s^2, where nothing is stated
+TRACTION = 2.5  # m/s^2
+MARGIN = 3.0  # of a motor's speed without load over the largest that is asked for
 ROUND = np.column_stack([f(np.linspace(0, 2 * np.pi, 180, endpoint=False)) for f in (np.cos, np.sin, np.zeros_like)])
 
 
@@ -71,10 +74,10 @@ def _write(folder: Path, source: Path, foreign: Foreign, made: tuple[DrivePair, 
     data = {
         "about": f"{foreign.model.name}, imported from {source.name}.",
         "kind": "ground",
-        "ground": _ground(folder.name, pair, model),
+        "ground": _ground(folder.name, pair, model, _limits(source, foreign)),
         "sensors": sensors_section(foreign, base_from_link),
     }
-    foreign.notes.add("guessed: motors, limits of speed and acceleration; set them in vehicle.yaml")
+    foreign.notes.add("guessed: motors; set them in vehicle.yaml")
     used = {s.mesh for link in model.links.values() for s in (*link.visuals, *link.collisions) if s.mesh is not None}
     for mesh in (folder / "meshes").glob("*"):
         if mesh not in used:
@@ -95,10 +98,26 @@ def _compare(foreign: Foreign, pair: DrivePair) -> None:
             foreign.notes.add(f"the plugin's {name} of {told:g} m is not that of the shapes, which counts: {found:.4g} m")
 
 
-def _ground(name: str, pair: DrivePair, model: UrdfModel) -> dict[str, Any]:
+def _limits(source: Path, foreign: Foreign) -> DriveLimits:
+    """What plugin and controllers state, the plugin first; what neither says stays None."""
+    stated = foreign.drive.limits.filled_by(limits_of_controllers(source, list(foreign.model.joints)))
+    if stated.source:
+        foreign.notes.add("limits of speed and acceleration taken from", stated.source)
+    if stated.missing:
+        foreign.notes.add("guessed, for no file states it; set it in vehicle.yaml", ", ".join(stated.missing))
+    if stated.linear_acceleration is not None and stated.linear_acceleration > TRACTION:
+        foreign.notes.add(f"an acceleration lowered to {TRACTION:g} m/s^2: wheels hold no more", f"{stated.linear_acceleration:g} m/s^2")
+        return replace(stated, linear_acceleration=TRACTION)
+    return stated
+
+
+def _ground(name: str, pair: DrivePair, model: UrdfModel, limits: DriveLimits) -> dict[str, Any]:
     poses = model.link_poses()
     solids = [placed(s, poses[n]) for n, link in model.links.items() for s in link.collisions]
     outline = max(float(reach(s, ROUND).max()) for s in solids)
+    fastest = limits.linear or SPEED
+    acceleration = limits.linear_acceleration or ACCELERATION
+    spin = min(4.0, 4 * acceleration / pair.track)
     mass = sum(link.inertial.mass for link in model.links.values() if link.inertial is not None)
     return {
         "urdf": f"{name}.urdf",
@@ -107,13 +126,18 @@ def _ground(name: str, pair: DrivePair, model: UrdfModel) -> dict[str, Any]:
         "wheel_radius": round(pair.radius, 6),
         "track": round(pair.track, 6),
         "radius": round(outline + 0.002, 4),
-        "max_linear": SPEED,
-        "max_angular": float(f"{min(2.0, 2 * SPEED / pair.track):.3g}"),
-        "max_linear_acceleration": 0.5,
-        "max_angular_acceleration": float(f"{min(4.0, 2.0 / pair.track):.3g}"),
+        "max_linear": fastest,
+        "max_angular": limits.angular or float(f"{min(2.0, 2 * fastest / pair.track):.3g}"),
+        "max_linear_acceleration": acceleration,
+        "max_angular_acceleration": float(f"{min(limits.angular_acceleration or spin, 2 * TRACTION / pair.track):.3g}"),
         "motor": {
             "stall_torque": float(f"{0.4 * mass * GRAVITY * pair.radius:.3g}"),
-            "no_load_speed": float(f"{3 * SPEED / pair.radius:.3g}"),
+            "no_load_speed": float(f"{MARGIN * _fastest_wheel(fastest, limits, pair) / pair.radius:.3g}"),
             "lag": 0.03,
         },
     }
+
+
+def _fastest_wheel(fastest: float, limits: DriveLimits, pair: DrivePair) -> float:
+    """m/s of a wheel's tread, straight on or turning on the spot."""
+    return max(fastest, (limits.angular or 0.0) * pair.track / 2)

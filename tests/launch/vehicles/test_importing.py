@@ -255,3 +255,49 @@ def test_a_small_part_of_a_robot_in_millimetres_is_in_millimetres_too(tmp_path):
     model = load_urdf(next((tmp_path / "vehicles" / "it").glob("*.urdf")))
     (looks,) = next(link.visuals for name, link in model.links.items() if name.endswith("laser"))
     assert np.ptp(triangles(looks)[0], axis=0).max() == pytest.approx(0.006, rel=0.01)
+
+
+CONTROLLER_1 = """
+mobile_base:
+  type: "diff_drive_controller/DiffDriveController"
+  left_wheel: ['$(arg prefix)giunto_sinistra']
+  right_wheel: ['$(arg prefix)giunto_destra']
+  linear: {x: {has_velocity_limits: true, max_velocity: 1.6, has_acceleration_limits: true, max_acceleration: 20.0}}
+  angular: {z: {has_velocity_limits: true, max_velocity: 3.5, has_acceleration_limits: false, max_acceleration: 6.0}}
+"""
+CONTROLLER_2 = """
+base:
+  ros__parameters:
+    left_wheel_names: ["giunto_sinistra"]
+    linear.x.has_velocity_limits: true
+    linear.x.max_velocity: 0.46
+    linear.x.max_acceleration: 0.9
+    angular.z.max_velocity: 1.9
+    angular.z.max_acceleration: 7.7
+"""
+OTHER = "arm: {left_wheel: no_such_joint, linear: {x: {max_velocity: 9.0}}}"
+
+
+@pytest.mark.parametrize(
+    ("files", "limits", "told"),
+    [
+        ({"config/a.yaml": OTHER, "config/control.yaml": CONTROLLER_1}, (1.6, 3.5, 2.5), "taken from: control.yaml"),
+        ({"param/control.yaml": CONTROLLER_2}, (0.46, 1.9, 0.9), "taken from: control.yaml"),
+        ({"config/a.yaml": OTHER, "config/b.yaml": "!degrees [1"}, (0.5, 2.0, 0.5), "for no file states it; set it in vehicle.yaml: speed"),
+    ],
+    ids=["ROS 1", "ROS 2", "of others"],
+)
+def test_limits_that_the_makers_state_are_taken_over(tmp_path, files, limits, told):
+    for package in ("description", "control"):
+        (tmp_path / "source" / package).mkdir(parents=True)
+        (tmp_path / "source" / package / "package.xml").write_text("<package/>")
+    for name, text in files.items():
+        path = tmp_path / "source" / "control" / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+    source = ROBOTS["bare"](tmp_path / "source" / "description")
+    notes = import_vehicle(source, tmp_path / "vehicles" / "it", {})
+    ground = load_vehicle(tmp_path / "vehicles", "it").ground
+    assert (ground.max_linear, ground.max_angular, ground.max_linear_acceleration) == limits
+    assert any(told in line for line in notes)
+    assert ground.motor.no_load_speed * ground.wheel_radius > 2 * ground.max_linear

@@ -52,10 +52,7 @@ def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: FileL
         met = _links_met(model, sensors.lidar, poses)
         if len(met) >= SHUT * sensors.lidar.beams:
             link_name = Counter(met).most_common(1)[0][0]
-            yield (
-                f"{place.at('lidar', 'mount')}: the lidar is inside the collision shape of link '{link_name}' and would see nothing else; "
-                "mount it outside"
-            )
+            yield (f"{place.at('lidar', 'mount')}: the lidar is inside of link '{link_name}' and would see nothing else; mount it outside")
 
 
 def _lidar_faults(lidar: Lidar, place: FileLocation) -> Iterator[str]:
@@ -93,12 +90,18 @@ def mounted(sensors: Sensors) -> Iterator[tuple[tuple[Key, ...], Any]]:
 
 
 def _links_met(model: UrdfModel, lidar: Lidar, poses: Poses) -> list[str]:
-    """Of each beam that meets the vehicle's own body, other than the lidar's housing: the link that it meets first."""
+    """Of each beam that meets the vehicle's own body, other than the lidar's housing: the link that it meets first.
+
+    By what is seen, for collision shapes are often hulls that bridge the slot in which a scanner is.
+    """
     angles = lidar.angle_min + np.arange(lidar.beams) * lidar.angle_increment
     level = np.column_stack((np.cos(angles), np.sin(angles), np.zeros(len(angles))))
     rays = Rays(np.array(lidar.mount.xyz), level @ matrix(from_euler(*lidar.mount.rpy)).T)
-    names = [name for name in poses if model.links[name].collisions and not _houses(model, name, lidar, poses)]
-    ranges = [cast(scene((placed(s, poses[name]) for s in model.links[name].collisions), None), [], rays, OWN) for name in names]
+    bodies = {
+        name: link.visuals or link.collisions for name in poses if not _houses(model, name, lidar, poses) and (link := model.links[name])
+    }
+    names = [name for name, solids in bodies.items() if solids]
+    ranges = [cast(scene((placed(s, poses[name]) for s in bodies[name]), None), [], rays, OWN) for name in names]
     nearest = np.argmin(ranges, axis=0) if names else np.zeros(0, dtype=int)
     return [names[link] for beam, link in enumerate(nearest) if np.isfinite(ranges[link][beam])]
 

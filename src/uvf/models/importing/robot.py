@@ -1,5 +1,6 @@
 """A robot as somebody else described it, whatever the format: body, what drives it, what it senses."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -23,14 +24,46 @@ class ForeignSensor:
     link_from_sensor: Transform = IDENTITY
 
 
+LIMITS = {
+    "linear": "speed",
+    "angular": "turn rate",
+    "linear_acceleration": "acceleration",
+    "angular_acceleration": "angular acceleration",
+}
+
+
+@dataclass(frozen=True)
+class DriveLimits:
+    """Largest speed [m/s], turn rate [rad/s] and accelerations [m/s^2, rad/s^2], None where nothing is said, and where they stand."""
+
+    linear: float | None = None
+    angular: float | None = None
+    linear_acceleration: float | None = None
+    angular_acceleration: float | None = None
+    source: str = ""
+
+    def filled_by(self, other: "DriveLimits") -> "DriveLimits":
+        """These limits, and those of the other where these say nothing."""
+        own = {name: value for name in LIMITS if (value := getattr(self, name)) is not None}
+        more = {name: value for name in LIMITS if name not in own and (value := getattr(other, name)) is not None}
+        sources = [limits.source for limits, told in ((self, own), (other, more)) if told]
+        return DriveLimits(**own, **more, source=", ".join(sources))
+
+    @property
+    def missing(self) -> list[str]:
+        """What nothing is said of."""
+        return [words for name, words in LIMITS.items() if getattr(self, name) is None]
+
+
 @dataclass(frozen=True)
 class ImportedDrive:
-    """What a plugin for differential drive tells: the joints' names, and track and wheel radius [m] where it gives them."""
+    """What a plugin for differential drive tells: the joints' names, and track and wheel radius [m] and limits where it gives them."""
 
     left: tuple[str, ...] = ()
     right: tuple[str, ...] = ()
     track: float | None = None
     wheel_radius: float | None = None
+    limits: DriveLimits = DriveLimits()
 
 
 @dataclass
@@ -62,7 +95,15 @@ def drive_of(plugin: Any) -> ImportedDrive | None:
     texts = dict(given)
     left, right = (tuple(v for t, v in given if t in (f"{s}joint", f"{s}frontjoint", f"{s}rearjoint")) for s in ("left", "right"))
     diameter, radius = _number(texts.get("wheeldiameter")), _number(texts.get("wheelradius"))
-    return ImportedDrive(left, right, _number(texts.get("wheelseparation")), diameter / 2 if diameter else radius)
+    return ImportedDrive(left, right, _number(texts.get("wheelseparation")), diameter / 2 if diameter else radius, _limits(texts, plugin))
+
+
+def _limits(texts: Mapping[str, str], plugin: Any) -> DriveLimits:
+    """As the plugin of the newer Gazebo has them."""
+    linear, angular, fast, spinning = (
+        _number(texts.get(f"max{axis}{kind}")) for kind in ("velocity", "acceleration") for axis in ("linear", "angular")
+    )
+    return DriveLimits(linear, angular, fast, spinning, f"the plugin {plugin.get('filename', '')}")
 
 
 def _all(plugin: Any) -> list[tuple[str, str]]:
