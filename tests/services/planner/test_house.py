@@ -20,7 +20,7 @@ from uvf.runtime.state.stop_all import StopVoice
 from uvf.runtime.time.lockstep import Lockstep
 
 VEHICLE = "burger"
-ROUND = SETTLING + 70.0  # s, of exploring the latter
+ROUND = SETTLING + 80.0  # s, of exploring the latter
 GOAL = (1.4, 0.9)  # m, world: in the living room, seen early
 
 
