@@ -19,7 +19,7 @@ from uvf.models.importing.drive_pair import DrivePair, find_pair
 from uvf.models.importing.jsbsim import jsbsim_model
 from uvf.models.importing.meshes import with_own_meshes
 from uvf.models.importing.rebuilt import rebuilt
-from uvf.models.importing.robot import DriveLimits, Foreign
+from uvf.models.importing.robot import StatedLimits, Foreign
 from uvf.models.importing.sdf_robot import read_foreign_sdf
 from uvf.models.importing.sensors import sensors_section
 from uvf.models.importing.urdf import read_foreign_urdf
@@ -98,7 +98,7 @@ def _compare(foreign: Foreign, pair: DrivePair) -> None:
             foreign.notes.add(f"the plugin's {name} of {told:g} m is not that of the shapes, which counts: {found:.4g} m")
 
 
-def _limits(source: Path, foreign: Foreign) -> DriveLimits:
+def _limits(source: Path, foreign: Foreign) -> StatedLimits:
     """What plugin and controllers state, the plugin first; what neither says stays None."""
     stated = foreign.drive.limits.filled_by(limits_of_controllers(source, list(foreign.model.joints)))
     if stated.source:
@@ -111,7 +111,7 @@ def _limits(source: Path, foreign: Foreign) -> DriveLimits:
     return stated
 
 
-def _ground(name: str, pair: DrivePair, model: UrdfModel, limits: DriveLimits) -> dict[str, Any]:
+def _ground(name: str, pair: DrivePair, model: UrdfModel, limits: StatedLimits) -> dict[str, Any]:
     poses = model.link_poses()
     solids = [placed(s, poses[n]) for n, link in model.links.items() for s in link.collisions]
     outline = max(float(reach(s, ROUND).max()) for s in solids)
@@ -138,6 +138,6 @@ def _ground(name: str, pair: DrivePair, model: UrdfModel, limits: DriveLimits) -
     }
 
 
-def _fastest_wheel(fastest: float, limits: DriveLimits, pair: DrivePair) -> float:
+def _fastest_wheel(fastest: float, limits: StatedLimits, pair: DrivePair) -> float:
     """m/s of a wheel's tread, straight on or turning on the spot."""
     return max(fastest, (limits.angular or 0.0) * pair.track / 2)

@@ -30,9 +30,9 @@ class MarkerApproach:
     def step(self, now: TeamSituation) -> bool:
         """Whether it is known."""
         ticket = self._ticket
-        if ticket is not None and ticket.accepted:
+        if ticket is not None and ticket.accepted and 0.0 <= ticket.reply.duration < inf:
             self.place, self.duration, self._ticket = self._places[0], float(ticket.reply.duration), None
-        elif ticket is not None and ticket.refused:
+        elif ticket is not None and (ticket.accepted or ticket.refused):
             self._places, self._ticket = self._places[1:], None
         if self._ticket is None and self.place is None and self._places:
             self._ticket = now.desk.ask("preview", self.vehicle, preview_request(None, self._places[0]), patience=0.0)

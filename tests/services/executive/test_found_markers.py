@@ -243,3 +243,11 @@ def test_each_takes_what_lies_on_its_own_side_and_the_near_ones_first(tmp_path):
     team.find("carl", (9.0, 1.0), (9.0, 6.0), (5.0, 1.0), (5.0, 6.0))
     team.step(8)
     assert sorted((vehicle, round(x), y > 3.5) for vehicle, x, y in goals(team)) == [("anne", 4, False), ("bert", 4, True)]
+
+
+@pytest.mark.parametrize("duration", [math.nan, math.inf, -1.0])
+def test_a_planner_that_tells_nonsense_is_not_sent(team, duration):
+    team.durations["anne"] = duration
+    team.find("carl", (4.2, 1.3))
+    team.step(60)
+    assert [vehicle for vehicle, *_ in goals(team)] == ["bert"]

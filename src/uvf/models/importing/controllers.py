@@ -6,7 +6,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from uvf.models.importing.robot import DriveLimits
+from uvf.models.importing.robot import StatedLimits, stated
 from uvf.models.yaml_data import BadInput, read_yaml
 
 PACKAGE = "package.xml"
@@ -21,7 +21,7 @@ SUBSTITUTED = re.compile(r"\$\([^)]*\)")
 """What roslaunch would put in, such as the prefix of a robot's joints: none, by default."""
 
 
-def limits_of_controllers(description: Path, joints: Sequence[str]) -> DriveLimits:
+def limits_of_controllers(description: Path, joints: Sequence[str]) -> StatedLimits:
     """The limits of the controller that drives one of these joints, of those in the packages beside that of the description."""
     for path in _files(description):
         try:
@@ -31,7 +31,7 @@ def limits_of_controllers(description: Path, joints: Sequence[str]) -> DriveLimi
         for controller in _sections(data):
             if set(joints) & set(_wheels(controller)):
                 return _limits(controller, path.name)
-    return DriveLimits()
+    return StatedLimits()
 
 
 def _files(description: Path) -> Iterator[Path]:
@@ -58,11 +58,11 @@ def _wheels(controller: Mapping[str, Any]) -> Iterator[str]:
         yield from (SUBSTITUTED.sub("", str(name)) for name in (named if isinstance(named, list) else [named] if named else []))
 
 
-def _limits(controller: Mapping[str, Any], source: str) -> DriveLimits:
+def _limits(controller: Mapping[str, Any], source: str) -> StatedLimits:
     linear, angular, fast, spinning = (
         _limit(controller, axis, kind) for kind in ("velocity", "acceleration") for axis in ("linear.x", "angular.z")
     )
-    return DriveLimits(linear, angular, fast, spinning, source)
+    return StatedLimits(linear, angular, fast, spinning, source)
 
 
 def _limit(controller: Mapping[str, Any], axis: str, kind: str) -> float | None:
@@ -72,5 +72,4 @@ def _limit(controller: Mapping[str, Any], axis: str, kind: str) -> float | None:
     section = nested.get(inner) if isinstance(nested, dict) else None
     told = section if isinstance(section, dict) else {}
     in_force = told.get(f"has_{kind}_limits", controller.get(f"{axis}.has_{kind}_limits", True))
-    value = told.get(f"max_{kind}", controller.get(f"{axis}.max_{kind}"))
-    return float(value) if in_force is not False and isinstance(value, int | float) and value > 0 else None
+    return stated(told.get(f"max_{kind}", controller.get(f"{axis}.max_{kind}"))) if in_force is not False else None

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any
 
 from uvf.maths.se3 import IDENTITY, Transform
@@ -33,7 +34,7 @@ LIMITS = {
 
 
 @dataclass(frozen=True)
-class DriveLimits:
+class StatedLimits:
     """Largest speed [m/s], turn rate [rad/s] and accelerations [m/s^2, rad/s^2], None where nothing is said, and where they stand."""
 
     linear: float | None = None
@@ -42,12 +43,12 @@ class DriveLimits:
     angular_acceleration: float | None = None
     source: str = ""
 
-    def filled_by(self, other: "DriveLimits") -> "DriveLimits":
+    def filled_by(self, other: "StatedLimits") -> "StatedLimits":
         """These limits, and those of the other where these say nothing."""
         own = {name: value for name in LIMITS if (value := getattr(self, name)) is not None}
         more = {name: value for name in LIMITS if name not in own and (value := getattr(other, name)) is not None}
         sources = [limits.source for limits, told in ((self, own), (other, more)) if told]
-        return DriveLimits(**own, **more, source=", ".join(sources))
+        return StatedLimits(**own, **more, source=", ".join(sources))
 
     @property
     def missing(self) -> list[str]:
@@ -63,7 +64,7 @@ class ImportedDrive:
     right: tuple[str, ...] = ()
     track: float | None = None
     wheel_radius: float | None = None
-    limits: DriveLimits = DriveLimits()
+    limits: StatedLimits = StatedLimits()
 
 
 @dataclass
@@ -86,6 +87,11 @@ class Foreign:
                 self.notes.add("plugins dropped", plugin.get("filename") or plugin.get("name") or "")
 
 
+def stated(value: object) -> float | None:
+    """A limit as a file states it; None for what is no limit."""
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) and 0.0 < value < inf else None
+
+
 def drive_of(plugin: Any) -> ImportedDrive | None:
     """The joints and measures of a plugin for differential or skid-steer drive, by the names that ROS 1, ROS 2 and Gazebo use."""
     name = f"{plugin.get('filename', '')} {plugin.get('name', '')}".lower()
@@ -98,12 +104,12 @@ def drive_of(plugin: Any) -> ImportedDrive | None:
     return ImportedDrive(left, right, _number(texts.get("wheelseparation")), diameter / 2 if diameter else radius, _limits(texts, plugin))
 
 
-def _limits(texts: Mapping[str, str], plugin: Any) -> DriveLimits:
+def _limits(texts: Mapping[str, str], plugin: Any) -> StatedLimits:
     """As the plugin of the newer Gazebo has them."""
     linear, angular, fast, spinning = (
-        _number(texts.get(f"max{axis}{kind}")) for kind in ("velocity", "acceleration") for axis in ("linear", "angular")
+        stated(_number(texts.get(f"max{axis}{kind}"))) for kind in ("velocity", "acceleration") for axis in ("linear", "angular")
     )
-    return DriveLimits(linear, angular, fast, spinning, f"the plugin {plugin.get('filename', '')}")
+    return StatedLimits(linear, angular, fast, spinning, f"the plugin {plugin.get('filename', '')}")
 
 
 def _all(plugin: Any) -> list[tuple[str, str]]:
