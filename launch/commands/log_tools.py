@@ -19,7 +19,7 @@ from uvf.runtime.log.folder import logs_of, recovered_path
 from uvf.runtime.log.reading import log_begin, log_metadata
 from uvf.runtime.log.recovery import recover
 from uvf.runtime.log.replay import into_service, logged_site, onto_bus
-from uvf.runtime.log.run_samples import run_samples, whole_log
+from uvf.runtime.log.run_samples import is_cut_off, run_samples, whole_log
 
 SHOWN = 20
 
@@ -92,17 +92,17 @@ def describe_log(run: Path) -> None:
         types[sample.key] = sample.type_name
         end_ns = max(end_ns, sample.stamp_ns)
     logs = logs_of(run)
-    with whole_log(logs[0]) as first, whole_log(logs[-1]) as last:
+    with whole_log(logs[0]) as first:
         begin = log_begin(first) / 1e9
-        metadata = log_metadata(last) if last == logs[-1] else {}
     end = end_ns / 1e9
     width = max(map(len, counts), default=0)
     for key in sorted(counts):
         rate = counts[key] / max(end - begin, 1e-9)
         typer.echo(f"{key:{width}}  {types[key]:28}  {counts[key]:7} messages  {rate:6.1f} Hz  {sizes[key] / 1000:8.0f} kB")
     typer.echo(f"{counts.total()} messages, " + (f"from {begin:.1f} s to {end:.1f} s" if begin else f"{end:.1f} s"))
-    for name, value in metadata.items():
-        typer.echo(f"{name}: {value}")
+    if not is_cut_off(logs[-1]):
+        for name, value in log_metadata(logs[-1]).items():
+            typer.echo(f"{name}: {value}")
     tell_cut_off(run)
 
 

@@ -42,12 +42,12 @@ def check_criteria(site: Scenario) -> None:
     """Raises BadInput for a criterion with an unknown measure, or one that its vehicle has nothing to be measured for."""
     for i, criterion in enumerate(site.mission.criteria):
         known: Collection[str] = TASK_MEASURES if criterion.task else MEASURES
+        place = FileLocation(str(site.mission_path)).at("criteria", i, "measure")
         if criterion.measure not in known:
-            place = FileLocation(str(site.mission_path)).at("criteria", i, "measure")
             of = "task has a measure" if criterion.task else "measure"
             raise BadInput(f"{place}: no {of} '{criterion.measure}'; {nearest(criterion.measure, known, len(known))}")
         if criterion.vehicle:
-            _check_kind(criterion, site, FileLocation(str(site.mission_path)).at("criteria", i, "measure"))
+            _check_kind(criterion, site, place)
 
 
 def _check_kind(criterion: Criterion, site: Scenario, place: FileLocation) -> None:

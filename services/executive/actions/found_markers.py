@@ -54,6 +54,10 @@ class _Visitor:
         """Whether it is on its way to a marker."""
         return self.way is not None and marker.is_of(self.way.marker)
 
+    def shun(self, marker: FoundMarker, t: float) -> None:
+        """It could not reach a marker at ``t`` [s]; what it shuns no more is forgotten."""
+        self.shunned = [(other, until) for other, until in self.shunned if t < until] + [(marker, t + SHUNNED)]
+
     def shuns(self, marker: FoundMarker, t: float) -> bool:
         """Whether it could not reach a marker a short while ago."""
         return any(t < until and marker.is_of(other) for other, until in self.shunned)
@@ -150,7 +154,7 @@ class VisitFoundAction:
         if here is None or not visitor.takes_part:
             return
         for marker in found:
-            if dist(here[:2], marker.place_for(name)) <= self._near and not any(marker.is_of(other) for other in self._visited):
+            if dist(here[:2], marker.place_for(name)) <= self._near and not self._is_visited(marker):
                 self._visited.append(marker)
                 for other in self._visitors.values():
                     if other.goes_to(marker):
@@ -166,10 +170,11 @@ class VisitFoundAction:
 
     def _share_out(self, now: TeamSituation, found: list[FoundMarker]) -> None:
         """Asks the planners of who is free for the ways to markers to which nobody goes, and then sends each to the first of its own."""
+        wanted = [way for way in self._ways if self._visitors[way.vehicle].is_free and self._is_open(way.marker)]
         for way in self._ways:
-            if not self._visitors[way.vehicle].is_free or not self._is_open(way.marker):
+            if way not in wanted:
                 way.drop(now)
-        self._ways = [way for way in self._ways if self._visitors[way.vehicle].is_free and self._is_open(way.marker)]
+        self._ways = wanted
         if not self._ways and now.t >= self._again:
             self._ways = self._new_ways(now, [marker for marker in found if self._is_open(marker)])
         known = [way.step(now) for way in self._ways]
@@ -177,9 +182,12 @@ class VisitFoundAction:
             self._again = now.t if self._send(now) else now.t + AGAIN
             self._ways = []
 
+    def _is_visited(self, marker: FoundMarker) -> bool:
+        return any(marker.is_of(other) for other in self._visited)
+
     def _is_open(self, marker: FoundMarker) -> bool:
         """Whether nobody has been there, and nobody goes there."""
-        return not any(marker.is_of(other) for other in self._visited) and not any(v.goes_to(marker) for v in self._visitors.values())
+        return not self._is_visited(marker) and not any(visitor.goes_to(marker) for visitor in self._visitors.values())
 
     def _new_ways(self, now: TeamSituation, markers: list[FoundMarker]) -> list[MarkerApproach]:
         ways = []
@@ -195,16 +203,15 @@ class VisitFoundAction:
 
         Returns whether anybody was sent.
         """
-        for way in self._ways:
-            if way.place is None:
-                self._visitors[way.vehicle].shunned.append((way.marker, now.t + SHUNNED))
         markers: list[FoundMarker] = []
         for way in self._ways:
-            if way.place is not None and not any(way.marker.is_of(other) for other in markers):
+            if way.place is None:
+                self._visitors[way.vehicle].shun(way.marker, now.t)
+            elif not any(way.marker.is_of(other) for other in markers):
                 markers.append(way.marker)
-        names = [name for name, visitor in self._visitors.items() if visitor.takes_part and now.place(name) is not None]
         if not markers:
             return False
+        names = [name for name, visitor in self._visitors.items() if visitor.takes_part and now.place(name) is not None]
         asked = [(way, dist(way.here, way.place)) for way in self._ways if way.place is not None]
         pace = median([way.duration / length for way, length in asked if length > self._near] or [PACE])
         between = pace * np.array([[dist(a.place, b.place) for b in markers] for a in markers])
@@ -232,7 +239,7 @@ class VisitFoundAction:
         try:
             there = goal.step(now)
         except Failed:
-            visitor.shunned.append((marker, now.t + SHUNNED))
+            visitor.shun(marker, now.t)
             visitor.drop(now)
             return
         if there:

@@ -140,18 +140,18 @@ def _fan(sensor: ForeignSensor) -> tuple[float, float]:
 def _lidar(sensor: ForeignSensor, foreign: Foreign) -> Section:
     if sensor.element is None or sensor.element.find(".//horizontal") is None:
         return {"preset": "lds01"}
-    beams = round(_number(sensor, "horizontal/samples", 360) * _number(sensor, "horizontal/resolution", 1.0))
+    beams, fan = _fan(sensor)
+    beams = round(beams)
     if _number(sensor, "vertical/samples", 1) > 1:
         foreign.notes.add("a lidar of several rows becomes one of the level row", sensor.link)
     if beams > MOST_BEAMS:
         foreign.notes.add(f"beams lowered to {MOST_BEAMS}", sensor.link)
     beams = min(max(beams, 1), MOST_BEAMS)
-    low, high = _number(sensor, "horizontal/min_angle", 0.0), _number(sensor, "horizontal/max_angle", 2 * np.pi)
-    sweep = min(high - low, 2 * np.pi)
+    sweep = min(fan, 2 * np.pi)
     return {
         "hz": _rate(sensor, 5.0, FASTEST, foreign),
         "beams": beams,
-        "angle_min": low,
+        "angle_min": _number(sensor, "horizontal/min_angle", 0.0),
         "angle_increment": sweep / max(beams if sweep > 2 * np.pi - 0.1 / max(beams, 1) else beams - 1, 1) or 0.01,
         "range_min": max(_number(sensor, "range/min", 0.1), 0.0),
         "range_max": max(_number(sensor, "range/max", 10.0), 0.2),

@@ -70,10 +70,10 @@ def _written(path: Path, _changed: int, _size: int) -> Path:
 
 def _with_heavy_root(model: UrdfModel) -> dict[str, Link]:
     """The links; where the root has no mass, it has that of what is fast to it: engines take little for heavy on light."""
-    root, poses = model.roots[0], model.link_poses()
-    body = model.rigid_with(root)
+    root = model.roots[0]
     if model.links[root].inertial is not None:
         return model.links
+    body, poses = model.rigid_with(root), model.link_poses()
     given = [moved(inertial, poses[name]) for name in sorted(body) if (inertial := model.links[name].inertial) is not None]
     light = {name: replace(model.links[name], inertial=None) for name in body}
     return {**model.links, **light, root: replace(model.links[root], inertial=joined(given))}
