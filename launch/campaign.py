@@ -14,6 +14,7 @@ from launch.changed_mission import changed_mission
 from launch.run import run_lockstep
 from launch.scoring.scores import Verdict
 from uvf.models.scenario import load_scenario
+from uvf.runtime.log.folder import log_name
 
 CONFIDENCE = 0.95
 
@@ -58,7 +59,7 @@ def run_seeds(mission: Path, count: int, until: float | None, folder: Path) -> I
 def run_seed(mission: Path, seed: int, until: float | None, folder: Path) -> SeedRun:
     """Runs a mission with another seed; ``folder``: of the changed mission and the log, removed when it passes. Raises BadInput."""
     site = load_scenario(changed_mission(mission, [f"seed={seed}"], folder))
-    log = folder / "log-000.mcap"
+    log = folder / log_name(0)
     result = run_lockstep(site, until if until is not None else site.mission.duration, log)
     if result.passed:
         shutil.rmtree(folder)

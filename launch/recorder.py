@@ -1,6 +1,5 @@
 """The body of the recorder's process: the log of a run as a series of files, within the disk's space and the quota."""
 
-import re
 import shutil
 import time
 from collections.abc import Callable, Mapping
@@ -18,6 +17,7 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.zenoh_bus import ZenohBus
 from uvf.runtime.log.bounds import REFUSED
+from uvf.runtime.log.folder import log_name, next_number
 from uvf.runtime.log.recording import DEPTH, Recorder
 from uvf.runtime.log.versions import versions
 
@@ -39,11 +39,6 @@ def free_space(folder: Path) -> int:
         return shutil.disk_usage(folder).free
     except OSError:
         return 0
-
-
-def next_number(folder: Path) -> int:
-    """One more than the number of the newest log; numbers of removed logs are not reused."""
-    return 1 + max((int(m[1]) for p in folder.glob("log-*.mcap") if (m := re.fullmatch(r"log-(\d+)", p.stem))), default=-1)
 
 
 class LogSeries:
@@ -77,7 +72,7 @@ class LogSeries:
 
     def _begin(self, before: Recorder | None) -> Recorder:
         """The next file, with its head on the disk; if the disk refuses that, ``error`` says so and nothing is left behind."""
-        path = self._folder / f"log-{self._number:03}.mcap"
+        path = self._folder / log_name(self._number)
         begun = Recorder(path, self._attachments, before, versions(), self._restarts)
         begun.flush()
         if begun.error:

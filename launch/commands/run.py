@@ -23,6 +23,7 @@ from launch.vehicles.mission_faults import warnings
 from schemas import topics
 from uvf.models.scenario import load_scenario
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.log.folder import log_name
 from uvf.runtime.log.reading import is_log
 from uvf.runtime.messages.validation import escaped
 
@@ -43,7 +44,7 @@ def run_and_report(mission: str, until: float | None, log: Path | None, changes:
         return _run(base, changes, until, log)
     folder = new_run()
     with given_up_when_refused(folder):
-        return _run(base, changes, until, folder / "log-000.mcap")
+        return _run(base, changes, until, folder / log_name(0))
 
 
 def _run(base: Path, changes: list[str], until: float, log: Path) -> int:

@@ -12,7 +12,7 @@ from uvf.models.vehicle.sensors import Lidar
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import planar_frame, seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer
-from uvf.runtime.messages.readings.scans import Shape, beams_of, is_usable, shape_of
+from uvf.runtime.messages.readings.scans import Shape, beams_of, is_usable, sees_nothing, shape_of
 from uvf.sensors.fitted import sweeping_of
 from uvf.slam.correction import toward
 from uvf.slam.deskew import straightened
@@ -48,7 +48,8 @@ class PlacingService(Service):
     def _reading(self, scan: LaserScan, frames: FrameBuffer) -> Reading | None:
         """A new scan from where the lidar was at its last beam; None for one that has been seen. Raises FrameError.
 
-        Noise makes each scan another: one that is equal comes from a lidar that is frozen, whatever its stamp says.
+        Noise makes each scan another: one that is equal comes from a lidar that is frozen, whatever its stamp says, unless nothing
+        came back at all.
         """
         taken_at = seconds(scan.timestamp)
         if taken_at <= self._scan_time or not is_usable(scan):
@@ -68,7 +69,7 @@ class PlacingService(Service):
             lambda times: np.array([planar(frames.lookup(odom, base, t)) for t in times.tolist()]),
         )
         self._scan_time = taken_at
-        frozen, self._ranges = np.array_equal(ranges, self._ranges), ranges
+        frozen, self._ranges = np.array_equal(ranges, self._ranges) and not sees_nothing(scan), ranges
         return None if frozen else reading
 
     def _wait(self, t: float, reason: str) -> list[Event]:

@@ -1,17 +1,11 @@
 """How long a ground vehicle has been without what it drives by itself by: a scan that changes, a mapping that speaks."""
 
-from math import inf
-
 from schemas.messages import FrameTransform, LaserScan
 from uvf.runtime.messages.convert import seconds
+from uvf.runtime.messages.readings.scans import sees_nothing
 from uvf.sensors.sweeping import Sweeping
 
 MOVED = 0.03  # m of the wheels, after which a scan that is the same to the last bit has frozen
-
-
-def _sees_nothing(scan: LaserScan) -> bool:
-    """Whether nothing came back: in open space each scan is like the last, to the last bit."""
-    return not any(0.0 < r < inf for r in scan.ranges)
 
 
 class SensorWatch:
@@ -32,7 +26,7 @@ class SensorWatch:
         """One cycle at ``t`` [s]. travelled: distance by the wheels [m] since the start."""
         if scan is not None and (self._scan is None or scan.timestamp != self._scan.timestamp):
             changed = self._scan is None or scan.ranges != self._scan.ranges
-            if changed or travelled - self._travelled < MOVED or _sees_nothing(scan):
+            if changed or travelled - self._travelled < MOVED or sees_nothing(scan):
                 self._seen = self._sweeping.end(seconds(scan.timestamp))
             if changed:
                 self._travelled = travelled

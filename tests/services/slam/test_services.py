@@ -182,6 +182,13 @@ def test_keyframes_are_looked_through_only_when_there_is_one_more(monkeypatch):
     assert looked == ["keyframes", "session", "keyframes"]  # the session holds the keyframes
 
 
+def test_where_nothing_comes_back_the_floor_is_mapped_as_free_on_the_way(monkeypatch):
+    monkeypatch.setitem(globals(), "measured", lambda *_, **__: np.zeros(len(ANGLES)))
+    said = map_for(20.0, straight, lambda p: (p[0] + 1.0, p[1] - 0.2, p[2]))
+    known = [(occupancy_cells(out["map"]) >= 0).sum() for _, out in said if "map" in out]
+    assert known[-1] > 1.5 * known[0]
+
+
 def test_the_map_shows_the_room_where_it_is(drifting_run):
     grid = [out["map"] for _, out in drifting_run if "map" in out][-1]
     cells = occupancy_cells(grid)

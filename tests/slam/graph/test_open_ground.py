@@ -103,6 +103,13 @@ def test_a_match_tells_nothing_of_the_way_that_it_does_not_see():
     assert lengths.since(0, 3)[2] == TIED
 
 
+def test_of_several_edges_between_two_keyframes_the_shortest_counts():
+    lengths = PathLengths()
+    for i, j, length in ((0, 1, 20.0), (0, 1, 0.5), (1, 0, 0.3), (0, 1, 3.0)):
+        lengths.add(i, j, length)
+    assert lengths.since(0, 2)[1] == 0.3
+
+
 READING = Reading(0.0, np.zeros(541), BEAMS, Pose2(0.0, 0.0, 0.0))
 
 

@@ -10,7 +10,7 @@ from uvf.runtime.log.reading import restarts_of
 
 LOG_FOLDER = "UVF_LOG_FOLDER"
 RECOVERED = "recovered"
-_LOG = re.compile(r"log-\d+\.mcap")
+_LOG = re.compile(r"log-(\d+)\.mcap")
 
 
 def log_folder(environment: Mapping[str, str] = os.environ) -> Path | None:
@@ -22,6 +22,16 @@ def log_folder(environment: Mapping[str, str] = os.environ) -> Path | None:
 def run_folder(run: Path) -> Path:
     """The folder of a run that is named by its folder or by one of its logs."""
     return run if run.is_dir() else run.parent
+
+
+def log_name(number: int) -> str:
+    """The name of a run's log by its number, from 0."""
+    return f"log-{number:03}.mcap"
+
+
+def next_number(folder: Path) -> int:
+    """One more than the number of the folder's newest log; numbers of removed logs are not reused."""
+    return 1 + max((int(m[1]) for p in folder.glob("*.mcap") if (m := _LOG.fullmatch(p.name))), default=-1)
 
 
 def logs_of(run: Path) -> list[Path]:

@@ -37,15 +37,12 @@ class PathLengths:
     """Shortest path lengths [m] between keyframes along the edges of the graph."""
 
     def __init__(self) -> None:
-        self._i: list[int] = []
-        self._j: list[int] = []
-        self._length: list[float] = []
+        self._lengths: dict[tuple[int, int], float] = {}
 
     def add(self, i: int, j: int, length: float) -> None:
-        """Adds an edge of ``length`` [m] between keyframes i and j; shorter ones count 1 mm."""
-        self._i.append(i)
-        self._j.append(j)
-        self._length.append(max(length, 1e-3))
+        """Adds an edge of ``length`` [m] between keyframes i and j, of which the shortest counts; shorter ones than 1 mm count as that."""
+        ends = (min(i, j), max(i, j))
+        self._lengths[ends] = min(max(length, 1e-3), self._lengths.get(ends, np.inf))
 
     def tie(self, i: int, j: int, information: Floats) -> None:
         """Adds a loop with its information (3, 3) of (x, y, yaw); one along a fence, whose sigma is larger, ties nothing."""
@@ -54,6 +51,7 @@ class PathLengths:
 
     def since(self, k: int, n: int) -> Floats:
         """Shortest path lengths (n,) [m] from keyframe k to each of the n keyframes."""
-        graph = csr_matrix((self._length, (self._i, self._j)), shape=(n, n))
+        ends = np.array(list(self._lengths), dtype=np.intp).reshape(-1, 2)
+        graph = csr_matrix((list(self._lengths.values()), (ends[:, 0], ends[:, 1])), shape=(n, n))
         ways: Floats = dijkstra(graph, directed=False, indices=k)
         return ways

@@ -1,6 +1,6 @@
 """Lidar messages as beams of the base: any field of view, direction of turning, time of a sweep, place and attitude of the lidar."""
 
-from math import isfinite
+from math import inf, isfinite
 
 import numpy as np
 
@@ -15,6 +15,11 @@ Shape = tuple[str, float, float, int]
 def is_usable(scan: LaserScan) -> bool:
     """Whether a scan has beams whose directions are numbers; what their ranges are does not matter."""
     return len(scan.ranges) > 0 and isfinite(scan.start_angle) and isfinite(scan.end_angle)
+
+
+def sees_nothing(scan: LaserScan) -> bool:
+    """Whether nothing came back: in open space each scan is like the last, to the last bit."""
+    return not any(0.0 < r < inf for r in scan.ranges)
 
 
 def shape_of(scan: LaserScan) -> Shape:
