@@ -110,3 +110,16 @@ def test_a_tree_has_the_footprint_of_its_table():
     table = joined([box((1, 1, 1), (0, 0, 0.5)), sphere(0.4, (2, 0, 0.2)), cylinder(0.2, 1, (0, 2, 0.5), from_euler(0.5, 0, 0))])
     assert np.array_equal(grid(table, 0.1, 0.3), grid(build(table), 0.1, 0.3))
     assert segments(footprint(joined([]), 0, 1)).shape == (0, 2, 2)
+
+
+def test_upright_triangles_leave_no_gap_however_they_are_turned():
+    """What rounding makes of them must not be a sliver that is beside all cells."""
+    rng = np.random.default_rng(3)
+    corners = np.array([(-1.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 0.0, 1.0), (-1.0, 0.0, 1.0)])
+    for yaw in rng.uniform(-np.pi, np.pi, 300):
+        at, top = rng.uniform(-1.0, 1.0, 3) * (1.0, 1.0, 0.0), rng.uniform(0.3, 1.0)
+        sheet = mesh(corners * (1.0, 1.0, top), np.array([(0, 1, 2), (0, 2, 3)]), at, from_euler(0.0, 0.0, yaw))
+        shadows = footprint(sheet, 0.0011, 0.2)
+        assert {len(outline) for outline in shadows.outlines} == {2}
+        along = at[:2] + np.outer(np.linspace(-0.999, 0.999, 2001), (np.cos(yaw), np.sin(yaw)))
+        assert covered(shadows, CORNER, CELL, SIZE)[cell_of(along)].all()

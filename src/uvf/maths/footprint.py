@@ -5,6 +5,7 @@ leaning cylinder is taken as the prism of ``SIDES`` faces round it, too wide by 
 the inside of a closed one is not filled.
 """
 
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ Floats = NDArray[np.float64]
 
 SIDES = 64
 TOUCH = 1e-9
-"""[m] An overlap up to this is only a touch."""
+"""[m] An overlap up to this is only a touch, and a corner no farther from a straight side is none."""
 UPRIGHT = 1 - 1e-12
 CUBE: Floats = np.array([(x, y, z) for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
 
@@ -129,15 +130,16 @@ def _hull(points: Floats) -> Floats:
 def _half_hull(ordered: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
     chain: list[tuple[float, ...]] = []
     for x, y in ordered:
-        while len(chain) > 1 and _turn(chain[-2], chain[-1], (x, y)) <= TOUCH * TOUCH:
+        while len(chain) > 1 and _is_straight(chain[-2], chain[-1], (x, y)):
             chain.pop()
         chain.append((x, y))
     return chain
 
 
-def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:
-    """Twice the area of the triangle, positive to the left [m^2]."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+def _is_straight(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> bool:
+    """Whether b is no corner to the right of the way from a to c; by distance, or what rounding does to a sheet would be a sliver."""
+    twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    return twice_area <= TOUCH * max(hypot(c[0] - a[0], c[1] - a[1]), TOUCH)
 
 
 @compiled
