@@ -11,6 +11,8 @@ from uvf.maths.kinematics import WheelSpeeds
 Floats = NDArray[np.float64]
 Three = tuple[float, float, float]
 Four = tuple[float, float, float, float]
+Motion = tuple[Floats, Floats, Floats, Floats]
+"""The first four fields of ``BodyState``."""
 
 
 class Touch(NamedTuple):
@@ -38,8 +40,8 @@ class BodyState(NamedTuple):
 @compiled
 def base_motion(
     com: Three, world_from_com_xyzw: Four, com_velocity: Three, angular: Three, com_in_base: Floats, base_from_com: Floats
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """The first four fields of ``BodyState`` from the engine's motion of the centre of mass.
+) -> Motion:
+    """The motion of base_link from the engine's motion of the centre of mass.
 
     com (3,) [m], com_velocity (3,) [m/s], angular (3,) [rad/s], world_from_com_xyzw (4,), all world; com_in_base: (3,) [m],
     base_from_com: (4,) wxyz.

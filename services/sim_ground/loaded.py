@@ -21,6 +21,8 @@ class LoadedVehicle:
     up_in_com: tuple[float, float, float]
     friction: float
     """Coefficient of the wheels."""
+    soles: frozenset[int]
+    """Links with which it stands on a level floor: wheels and castors."""
     grip: tuple[float, float] = (1.0, 1.0)
     """Share of it that the left and the right wheel have now."""
 

@@ -5,23 +5,23 @@ are put where they are at each physics step, with the velocity they have, so tha
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from services.sim_ground.body import BodyState, Touch, base_motion
+from services.sim_ground.body import BodyState, Motion, Touch, base_motion
 from services.sim_ground.guest import Course
 from services.sim_ground.loaded import LoadedVehicle, Saved
 from services.sim_ground.motor import WheelMotor
+from services.sim_ground.touching import FLOOR, SOLE, Bodies, EngineContact
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.maths.rotations import IDENTITY, from_euler, inverse, matrix, multiply, rotate
+from uvf.maths.rotations import IDENTITY, from_euler, matrix, multiply, rotate
 from uvf.models.shapes.solid import Keyframes, Solid, pose_at
 from uvf.models.vehicle.file import Friction, GroundBody
-from uvf.models.world.file import TERRAIN
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.process.quiet import c_errors_discarded
 
@@ -30,9 +30,7 @@ with c_errors_discarded():
 
 Floats = NDArray[np.float64]
 STOPPED = WheelSpeeds(0.0, 0.0)
-GROUND = ("floor", TERRAIN)  # names of what one drives on
 AWAY = np.array((0.0, 0.0, 1e4))  # m
-TOUCH = 5e-4  # m, gap at which two bodies touch; the engine leaves a little air
 DEEP = 2e-3  # m, from which on one body is inside another
 FALLEN = 0.5  # cosine of the tilt from which on a vehicle no longer stands on its wheels
 MOVING, STANDING = (1, -1), (2, -3)
@@ -56,7 +54,7 @@ class BulletWorld:
     def __init__(self, solids: Sequence[Solid], vehicles: Mapping[str, BodyPlacement]) -> None:
         self._client: int = pybullet.connect(pybullet.DIRECT)
         self.rate = max((v.body.physics_hz for v in vehicles.values()), default=200.0)
-        self._names: dict[int, str] = {}
+        self._bodies = Bodies()
         self._objects: dict[str, int] = {}
         self._scripted: list[tuple[int, Solid, Keyframes]] = []
         self._guests: dict[str, tuple[int, Course | None]] = {}
@@ -66,10 +64,12 @@ class BulletWorld:
             fixedTimeStep=1 / self.rate, numSolverIterations=50, deterministicOverlappingPairs=1, physicsClientId=self._client
         )
         floor = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
-        self._add("floor", floor, np.zeros(3), IDENTITY)
+        self._floor = self._add(FLOOR, floor, np.zeros(3), IDENTITY)
         for solid in solids:
             index = self._add(solid.name, _collision_shape(solid, self._client), solid.position, solid.orientation)
-            if solid.path is not None:
+            if solid.path is None:
+                self._bodies.fixed.add(index)
+            else:
                 self._scripted.append((index, solid, solid.path))
         self._vehicles = {name: self._load(name, vehicle) for name, vehicle in vehicles.items()}
         self.advance({}, SETTLING)
@@ -79,7 +79,7 @@ class BulletWorld:
             mass, shape, basePosition=position.tolist(), baseOrientation=_xyzw(orientation), physicsClientId=self._client
         )
         pybullet.changeDynamics(index, -1, lateralFriction=1.0, physicsClientId=self._client)
-        self._names[index] = name
+        self._bodies.names[index] = name
         return index
 
     def _load(self, name: str, vehicle: BodyPlacement) -> LoadedVehicle:
@@ -87,7 +87,7 @@ class BulletWorld:
             index = pybullet.loadURDF(str(vehicle.urdf), flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=self._client)
         except pybullet.error as error:
             raise BadInput(f"{vehicle.urdf}: PyBullet cannot load it ({error}); check its geometry and joints") from error
-        self._names[index] = name
+        self._bodies.names[index] = name
         joints = self._joints(index)
         wheels = (joints[vehicle.body.left_joint], joints[vehicle.body.right_joint])
         for link in (-1, *joints.values()):
@@ -95,11 +95,18 @@ class BulletWorld:
         self._set_friction(index, vehicle.body.friction, wheels, [j for j in joints.values() if j not in wheels])
         local = pybullet.getDynamicsInfo(index, -1, physicsClientId=self._client)
         com_in_base = (np.array(local[3]), _wxyz(local[4]))
+        soles = self._soles(index, vehicle, com_in_base)
         self._place(index, vehicle, com_in_base)
         left, right = (WheelMotor(vehicle.body.motor, 1 / self.rate) for _ in wheels)
         x, y, z = matrix(com_in_base[1])[2]
         friction = max(vehicle.body.friction.mu, vehicle.body.friction.mu2)
-        return LoadedVehicle(index, wheels, (left, right), com_in_base, (float(x), float(y), float(z)), friction)
+        return LoadedVehicle(index, wheels, (left, right), com_in_base, (float(x), float(y), float(z)), friction, soles)
+
+    def _soles(self, index: int, vehicle: BodyPlacement, com_in_base: tuple[Floats, Floats]) -> frozenset[int]:
+        """The links with which it stands on a level floor."""
+        self._place(index, replace(vehicle, start=(0.0, 0.0, 0.0), z=0.0), com_in_base)
+        near: Any = pybullet.getClosestPoints(index, self._floor, SOLE, physicsClientId=self._client)
+        return frozenset(point[3] for point in near)
 
     def _set_friction(self, index: int, friction: Friction, wheels: Sequence[int], sliding: Sequence[int]) -> None:
         """The floor's coefficient is 1 and the engine multiplies both, so that the vehicle's alone count."""
@@ -196,24 +203,20 @@ class BulletWorld:
     def state(self, vehicle: str) -> BodyState:
         """Motion of base_link and the wheels now."""
         loaded = self._vehicles[vehicle]
+        left, right = self._joint_states(loaded)
+        return BodyState(*self._motion(loaded), wheel_angles=(left[0], right[0]), wheel_speeds=WheelSpeeds(left[1], right[1]))
+
+    def _motion(self, loaded: LoadedVehicle) -> Motion:
         com, orientation = pybullet.getBasePositionAndOrientation(loaded.index, physicsClientId=self._client)
         velocity, angular = pybullet.getBaseVelocity(loaded.index, physicsClientId=self._client)
-        left, right = self._joint_states(loaded)
-        motion = base_motion(com, orientation, velocity, angular, *loaded.com_in_base)
-        return BodyState(*motion, wheel_angles=(left[0], right[0]), wheel_speeds=WheelSpeeds(left[1], right[1]))
+        return base_motion(com, orientation, velocity, angular, *loaded.com_in_base)
 
     def touches(self, vehicle: str) -> list[Touch]:
-        """Everything that a vehicle touches now; floor and terrain only if it has fallen over."""
+        """Everything that a vehicle touches now; what it stands on only if it has fallen over."""
         loaded = self._vehicles[vehicle]
-        contacts: Any = pybullet.getContactPoints(bodyA=loaded.index, physicsClientId=self._client)
-        felt = [c for c in contacts if c[8] <= TOUCH and self._names[c[2]] not in GROUND]
-        if self._has_fallen(loaded):
-            felt += [c for c in contacts if c[8] <= TOUCH and self._names[c[2]] in GROUND]
-        if not felt:
-            return []
-        body = self.state(vehicle)
-        places = [rotate(inverse(body.world_from_body), np.array(c[5]) - body.position) for c in felt]
-        return [Touch(self._names[c[2]], float(np.arctan2(p[1], p[0]))) for c, p in zip(felt, places, strict=True)]
+        rows: Any = pybullet.getContactPoints(bodyA=loaded.index, physicsClientId=self._client)
+        contacts = [EngineContact(other, link, place, normal, gap) for _, _, other, link, _, place, _, normal, gap, *_ in rows]
+        return self._bodies.felt(contacts, loaded.soles, self._motion(loaded), self._has_fallen(loaded))
 
     def _has_fallen(self, loaded: LoadedVehicle) -> bool:
         _, (x, y, z, w) = pybullet.getBasePositionAndOrientation(loaded.index, physicsClientId=self._client)
@@ -223,7 +226,9 @@ class BulletWorld:
 
     def put(self, name: str, solid: Solid, mass: float) -> str:
         """Adds a solid of ``mass`` [kg], 0 = fixed. Returns what it would stand in, "" when it is added."""
-        self._objects[name] = self._add(name, _collision_shape(solid, self._client), solid.position, solid.orientation, mass)
+        self._objects[name] = index = self._add(name, _collision_shape(solid, self._client), solid.position, solid.orientation, mass)
+        if mass == 0.0:
+            self._bodies.fixed.add(index)
         return self._unless_free(name)
 
     def put_vehicle(self, name: str, vehicle: BodyPlacement) -> str:
@@ -241,7 +246,7 @@ class BulletWorld:
         index = self._index(name)
         self._objects.pop(name, None)
         self._vehicles.pop(name, None)
-        del self._names[index]
+        self._bodies.remove(index)
         pybullet.removeBody(index, physicsClientId=self._client)
 
     def place(self, name: str, position: Floats, orientation: Floats) -> str:
@@ -275,7 +280,7 @@ class BulletWorld:
 
     def _meets(self, index: int) -> str:
         """The name of a body that it is in by more than a contact's depth."""
-        for other, name in self._names.items():
+        for other, name in self._bodies.names.items():
             if other != index:
                 near: Any = pybullet.getClosestPoints(index, other, 0.0, physicsClientId=self._client)
                 if any(point[8] < -DEEP for point in near):
@@ -306,7 +311,7 @@ class BulletWorld:
 
         To set a filter, even the one that holds, makes it forget and find them again: at a save and a restore alike.
         """
-        for index in sorted(self._names):
+        for index in sorted(self._bodies.names):
             moves = pybullet.getDynamicsInfo(index, -1, physicsClientId=self._client)[0] > 0.0
             group, mask = MOVING if moves else STANDING
             for link in range(-1, pybullet.getNumJoints(index, physicsClientId=self._client)):

@@ -7,7 +7,7 @@ import trimesh
 from uvf.maths.rotations import from_euler, matrix
 from uvf.models.importing.worlds import Options, import_world
 from uvf.models.world.file import load_world
-from uvf.models.world.geometry import solids
+from uvf.models.world.geometry import floor_plan, reachable_floor, solids
 from uvf.models.yaml_data import BadInput
 
 BOX = "<collision name='c'><geometry><box><size>{}</size></box></geometry></collision>"
@@ -204,6 +204,50 @@ def test_a_slab_under_everything_is_the_ground(tmp_path):
     world, _ = taken(tmp_path, slab + crates)
     assert [box.centre[2] for box in world.boxes] == pytest.approx([0.5, 0.5, 0.5])
     assert world.floor == pytest.approx((-6.0, -6.0, 6.0, 6.0))
+
+
+def mesh_file(tmp_path, name, *parts):
+    """A collision of that mesh, which lies beside the world's file."""
+    folder = tmp_path / "gazebo"
+    folder.mkdir(exist_ok=True)
+    trimesh.util.concatenate(parts).export(folder / f"{name}.stl")
+    return f"<collision name='c'><geometry><mesh><uri>{name}.stl</uri></mesh></geometry></collision>"
+
+
+def block(size, at):
+    return trimesh.creation.box(size, trimesh.transformations.translation_matrix(at))
+
+
+def crates(height):
+    return "".join(model(f"crate_{x}", UNIT, f"<pose>{x} 0 {height + 0.5} 0 0 0</pose>") for x in (-4, 0, 4))
+
+
+def test_a_slab_that_is_a_mesh_is_the_ground_and_the_roof_above_is_not(tmp_path):
+    """Floor and ceiling of a warehouse, both wide, level and meshes."""
+    slab = model("slab", mesh_file(tmp_path, "slab", block((12, 10, 0.12), (0, 0, -0.03))), "<pose>1 0 0.004 0 0 0</pose>")
+    roof = model("roof", mesh_file(tmp_path, "roof", block((12, 10, 1.0), (0, 0, 9.0))), "<pose>1 0 0 0 0 0</pose>")
+    world, notes = taken(tmp_path, slab + roof + crates(0.034))
+    assert [mesh.name for mesh in world.meshes] == ["roof"]
+    assert [box.centre[2] for box in world.boxes] == pytest.approx([0.5] * 3)
+    assert world.fields[0].area == pytest.approx((-5.0, -5.0, 7.0, 5.0))
+    assert "moved by -0.034 m" in notes
+
+
+@pytest.mark.parametrize("furnished", [False, True])
+def test_the_floor_of_a_house_that_is_one_mesh_is_the_ground(tmp_path, furnished):
+    walls = [block((10, 0.2, 2.5), (0, y, 1.25)) for y in (-4, 4)] + [block((0.2, 8, 2.5), (x, 0, 1.25)) for x in (-5, 5)]
+    house = mesh_file(tmp_path, "house", block((10, 8, 0.1), (0, 0, -0.05)), *walls, block((10, 8, 0.2), (0, 0, 2.6)))
+    world, notes = taken(tmp_path, model("house", house, "<pose>0 0 0.3 0 0 0</pose>") + (crates(0.3) if furnished else ""))
+    assert world.meshes[0].position == pytest.approx((0.0, 0.0, -0.002))
+    assert [box.centre[2] for box in world.boxes] == pytest.approx([0.5] * (3 if furnished else 0))
+    assert "house" in notes
+    plan = floor_plan(world, 0.05)
+    assert 60 < reachable_floor(plan, 0.0, -2.0, 0.2).sum() * 0.05**2 < 80
+
+
+def test_a_solid_block_is_no_ground(tmp_path):
+    world, _ = taken(tmp_path, model("tower", BOX.format("10 10 30"), "<pose>0 0 15 0 0 0</pose>"))
+    assert world.boxes[0].centre == pytest.approx((0.0, 0.0, 15.0))
 
 
 def test_an_upright_plane_is_a_wall(tmp_path):

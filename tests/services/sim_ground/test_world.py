@@ -200,3 +200,55 @@ def test_a_huge_speed_is_no_more_than_its_motors_can_do(world):
     state = world.state("burger")
     assert np.isfinite(state.position).all()
     assert np.linalg.norm(state.velocity) < 0.01
+
+
+def box_at(x, z, size, pitch=0.0):
+    return Solid("thing", "box", size, np.array((x, 0.0, z)), from_euler(0.0, pitch, 0.0))
+
+
+def felt_on_the_way(thing, speed=0.15, seconds=8.0):
+    """What a burger touches that drives along x from 0 for a while, and where it is then [m]."""
+    world = BulletWorld([thing], {"burger": replace(BURGER, start=(0.0, 0.0, 0.0))})
+    felt = []
+    for _ in range(round(seconds / 0.02)):
+        world.advance({"burger": DRIVE.wheels(Twist(speed, 0.0))}, 0.02)
+        felt += [touch.other for touch in world.touches("burger")]
+    place = world.state("burger").position
+    world.close()
+    return felt, place
+
+
+RAMP = box_at(1.5, 1.5 * np.sin(0.15) - 0.01, (3.0, 1.0, 0.02), -0.15)
+
+
+@pytest.mark.parametrize(("thing", "height"), [(RAMP, 0.1), (box_at(1.2, 0.0015, (2.0, 1.0, 0.003)), 0.002)])
+def test_what_it_drives_on_is_no_contact(thing, height):
+    felt, place = felt_on_the_way(thing)
+    assert place[2] > height
+    assert felt == []
+
+
+@pytest.mark.parametrize(
+    "thing",
+    [
+        box_at(0.8, 0.02, (1.0, 1.0, 0.04)),  # a kerb
+        box_at(0.8, 0.15, (1.0, 0.08, 0.04)),  # a bar at the height of its deck
+        Solid(
+            "thing",
+            "box",
+            (0.3, 0.04, 0.03),
+            np.array((0.4, 0.0, 0.015)),
+            path=Keyframes(np.array(((0.0, 0.4, 0.0, 0.0), (9.0, -2.0, 0.0, 0.0)))),
+        ),
+    ],
+)
+def test_what_stands_in_its_way_is_a_contact(thing):
+    felt, _ = felt_on_the_way(thing)
+    assert set(felt) == {"thing"}
+
+
+def test_its_deck_on_a_bump_is_a_contact_although_that_bears_it():
+    world = BulletWorld([box_at(0.03, 0.01, (0.06, 0.08, 0.02))], {"burger": replace(BURGER, start=(0.0, 0.0, 0.0), z=0.012)})
+    world.advance({}, 1.0)
+    assert {touch.other for touch in world.touches("burger")} == {"thing"}
+    world.close()

@@ -2,29 +2,45 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
-from uvf.maths.rotations import from_euler, matrix
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.sdf_shapes import Thing
+from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.scene import still
+from uvf.models.shapes.solid import Solid
 from uvf.models.world.file import LARGEST_FLOOR, Box, Colour, Cylinder, Field, Mesh, Origin, Sphere, WorldFile
 from uvf.models.world.geometry import solids
 
+Floats = NDArray[np.float64]
 Planes = Sequence[tuple[float, Colour | None]]
 
 LEVEL = 1e-3  # m
 MARGIN = 1.0  # m of floor about the outermost thing
-SLAB_SHARE = 0.5  # of the floor that a slab covers to count as the ground
+SLAB_SHARE = 0.5  # of the floor that a level surface covers to count as the ground, and of the things that stand above it
 THICKEST_SLAB = 0.5  # m
 SHORTEST_SLAB = 3.0  # m
+MOST_SLOPE = np.radians(1.0)  # of a level surface
+SAME_LEVEL = 0.005  # m, between surfaces of one level
+LOWEST_WALL = 0.3  # m, about the floor of a building that is one mesh
+SUNK = 0.002  # m, by which a building's own floor lies below the ground: the engine feels the edges between its triangles
 FARTHEST = 1e4  # m
-ON_SLAB = 0.01  # m
 WIDEST = 1000.0  # m
 PALE: Colour = (0.5, 0.5, 0.48)
 BARE = WorldFile(about="", origin=Origin(0.0, 0.0), floor=(-10.0, -10.0, 10.0, 10.0))
+
+
+class _Storey(NamedTuple):
+    """A wide level surface of a thing. height [m]; extent: x_min, y_min, x_max, y_max [m]; is_slab: the thing is nothing else."""
+
+    thing: Thing
+    height: float
+    extent: tuple[float, float, float, float]
+    is_slab: bool
 
 
 class SdfGround:
@@ -40,33 +56,65 @@ class SdfGround:
         if len(kept) < len(things):
             self._notes.add(f"things farther than {FARTHEST:g} m from the origin are left out", f"{len(things) - len(kept)}")
         height, colour = max(planes, key=lambda plane: plane[0], default=(0.0, None))
-        floor, slab = self._floor(kept), self._slab(kept)
+        floor, storey = self._floor(kept), self._storey(kept)
         fields = []
-        if slab is not None and (not planes or _top(slab) >= height - LEVEL):
-            height = _top(slab)
-            kept.remove(slab)
-            fields = [Field(_extent(slab), slab.colour)]
-            self._notes.add("a slab under everything is the ground, z = 0", slab.name)
+        if storey is not None and (not planes or storey.height >= height - LEVEL):
+            height = storey.height
+            kept.remove(storey.thing)
+            if storey.is_slab:
+                fields = [Field(storey.extent, storey.thing.colour)]
+                self._notes.add("a slab under everything is the ground, z = 0", storey.thing.name)
+            else:
+                kept.append(_moved(storey.thing, -SUNK))
+                note = f"its floor is the ground, z = 0; it stands {1e3 * SUNK:g} mm lower, so that wheels run on the plane"
+                self._notes.add(note, storey.thing.name)
         if abs(height) > LEVEL:
             self._notes.add(f"the ground lies at {height:g} m; everything is moved by {-height:g} m so that it is z = 0")
             kept = [_moved(thing, -height) for thing in kept]
         return msgspec.structs.replace(_with(world, kept), floor=floor, fields=fields, ground_colour=colour or PALE)
 
-    def _slab(self, things: Sequence[Thing]) -> Box | None:
-        """A level box below the middles of all others that carries most of them."""
-        level = [t for t in things if isinstance(t, Box) and abs(t.rpy[0]) + abs(t.rpy[1]) < 1e-6]
-        boxes = [t for t in level if t.size[2] <= THICKEST_SLAB and min(t.size[:2]) >= SHORTEST_SLAB]
-        if not boxes or len(things) < 2:
-            return None
-        widest = max(boxes, key=lambda b: b.size[0] * b.size[1])
+    def _storey(self, things: Sequence[Thing]) -> _Storey | None:
+        """The wide level surface that carries most of the others; of several the one nearest to z = 0, where Gazebo lets robots begin."""
+        spans = [self._span(thing) for thing in things]
         x_min, y_min, x_max, y_max = self._floor(things)
-        covers = widest.size[0] * widest.size[1] >= SLAB_SHARE * (x_max - x_min - 2 * MARGIN) * (y_max - y_min - 2 * MARGIN)
-        above = sum(_middle(t) > _top(widest) for t in things if t is not widest)
-        return widest if covers and above >= SLAB_SHARE * (len(things) - 1) else None
+        least = SLAB_SHARE * (x_max - x_min - 2 * MARGIN) * (y_max - y_min - 2 * MARGIN)
+        found = []
+        for thing, (low, high) in zip(things, spans, strict=True):
+            if min(high[:2] - low[:2]) < SHORTEST_SLAB:
+                continue
+            x_low, y_low, x_high, y_high = (round(float(v), 3) for v in (*low[:2], *high[:2]))
+            for height in self._levels(thing, least):
+                above = sum(span[0][2] + span[1][2] > 2 * height for other, span in zip(things, spans, strict=True) if other is not thing)
+                is_slab = high[2] <= height + LEVEL and low[2] >= height - THICKEST_SLAB
+                has_walls = high[2] >= height + LOWEST_WALL
+                if above >= SLAB_SHARE * (len(things) - 1) and (has_walls or (is_slab and len(things) > 1)):
+                    found.append(_Storey(thing, round(height, 4), (x_low, y_low, x_high, y_high), is_slab))
+        return min(found, key=lambda storey: (abs(storey.height), -storey.height), default=None)
+
+    def _levels(self, thing: Thing, least: float) -> list[float]:
+        """Heights [m] at which a thing has level surface that looks up, ``least`` [m^2] of it together."""
+        if not isinstance(thing, Box | Mesh):
+            return []
+        vertices, faces = triangles(*self._solids((thing,)))
+        corners = vertices[faces]
+        doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        is_level = doubled[:, 2] > np.cos(MOST_SLOPE) * np.linalg.norm(doubled, axis=1)
+        heights, areas = corners[is_level, :, 2].mean(axis=1), doubled[is_level, 2] / 2
+        order = np.argsort(heights)
+        groups = np.split(order, np.flatnonzero(np.diff(heights[order]) > SAME_LEVEL) + 1)
+        return [float(np.average(heights[g], weights=areas[g])) for g in groups if areas[g].sum() >= least]
+
+    def _solids(self, things: Sequence[Thing]) -> list[Solid]:
+        return solids(_with(BARE, things), self._folder)
+
+    def _span(self, thing: Thing) -> tuple[Floats, Floats]:
+        """Lowest and highest corner (3,) [m] of the box about a thing."""
+        parts = still(self._solids((thing,)))
+        return parts.low.min(axis=0), parts.high.max(axis=0)
 
     def _floor(self, things: Sequence[Thing]) -> tuple[float, float, float, float]:
         """The rectangle about everything; about the origin when there is nothing."""
-        parts = still(solids(_with(BARE, things), self._folder))
+        parts = still(self._solids(things))
         if len(parts.kinds) == 0:
             return BARE.floor
         low, high = parts.low[:, :2].min(axis=0) - MARGIN, parts.high[:, :2].max(axis=0) + MARGIN
@@ -98,21 +146,3 @@ def _moved(thing: Thing, up: float) -> Thing:
     x, y, z = _place(thing)
     name = "base" if isinstance(thing, Cylinder) else "position" if isinstance(thing, Mesh) else "centre"
     return msgspec.structs.replace(thing, **{name: (x, y, z + up)})
-
-
-def _top(box: Box) -> float:
-    return box.centre[2] + box.size[2] / 2
-
-
-def _middle(thing: Thing) -> float:
-    """Height [m] of the middle, of a mesh a little above its origin: enough to tell what stands on a slab."""
-    z = _place(thing)[2]
-    return z + thing.height / 2 if isinstance(thing, Cylinder) else z + ON_SLAB if isinstance(thing, Mesh) else z
-
-
-def _extent(box: Box) -> tuple[float, float, float, float]:
-    """x_min, y_min, x_max, y_max [m]."""
-    dx, dy, _ = np.abs(matrix(from_euler(*box.rpy))) @ (np.array(box.size) / 2)
-    x, y, _ = box.centre
-    x_min, y_min, x_max, y_max = (round(float(v), 3) for v in (x - dx, y - dy, x + dx, y + dy))
-    return x_min, y_min, x_max, y_max
