@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 from services.sim_camera.renderer import BulletRenderer, Pose
 from uvf.maths.footprint import SIDES, footprint
 from uvf.maths.rotations import from_matrix
+from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.scene import primitives
 from uvf.models.shapes.solid import Solid, pose_at
 from uvf.models.vehicle.sensors import Camera, Mount
+from uvf.models.world.cutaway import cut_open, is_roofed
 from uvf.models.world.file import WorldFile
 from uvf.models.world.geometry import FloorPlan, solids, things
 from uvf.models.world.terrain import relief
@@ -29,6 +31,7 @@ LENS = 0.9  # rad
 LOOK_DOWN = np.radians(42.0)
 LOOK_FROM = np.radians(-62.0)  # from the south-east
 ON_THE_FLOOR = 0.02  # m, what lies lower is not drawn into the plan
+ALL = 1e3  # m, above everything
 WIDE = 3.0  # m, from which on a mesh is taken for a building
 LINES = 2.0  # m, between lines of equal height
 CUT = 1.4  # m, without terrain: higher walls and things are shown cut there, so that one looks into the rooms
@@ -58,8 +61,10 @@ def draw_plan(axes: Axes, world: WorldFile, plan: FloorPlan, reachable: Mask | N
     if (land := relief(world)) is not None:
         lines = axes.contour(land.x, land.y, land.heights, np.arange(0.0, land.heights.max(), LINES), colors="saddlebrown", linewidths=0.6)
         axes.clabel(lines, fontsize=7)
-    for solid in things(world):
-        _draw_solid(axes, solid)
+    parts = things(world)
+    top = CUT if is_roofed(parts, world.floor) else ALL
+    for solid in parts:
+        _draw_solid(axes, solid, top)
         if solid.path is not None:
             axes.plot(solid.path.keys[:, 1], solid.path.keys[:, 2], "--", color=(0.8, 0.1, 0.1), linewidth=0.8)
     axes.set_xlim(far[:2])
@@ -68,9 +73,9 @@ def draw_plan(axes: Axes, world: WorldFile, plan: FloorPlan, reachable: Mask | N
     axes.set_ylabel("y [m]")
 
 
-def _draw_solid(axes: Axes, solid: Solid) -> None:
-    """Its shadow on the ground."""
-    shadow = footprint(primitives(solid), ON_THE_FLOOR, 1e3)
+def _draw_solid(axes: Axes, solid: Solid, top: float) -> None:
+    """The shadow on the ground of what lies below ``top`` [m]."""
+    shadow = footprint(primitives(solid), ON_THE_FLOOR, top)
     look: dict[str, Any] = {"facecolor": (*solid.colour, 0.75), "edgecolor": (0, 0, 0, 0.35), "linewidth": 0.3}
     if solid.shape == "mesh":
         look["edgecolor"] = "none"
@@ -85,7 +90,7 @@ def view(world: WorldFile) -> NDArray[np.uint8]:
     """RGB image (height, width, 3) from the south-east and above, tall things cut, moving ones at the start of their scripts."""
     camera = Camera(Mount((0.0, 0.0, 0.0)), hz=1.0, width=WIDTH, height=HEIGHT, fov=LENS, far=2000.0)
     with TemporaryDirectory() as scratch:
-        placed = [_at_start(solid if world.terrain else _cut(solid, Path(scratch))) for solid in solids(world)]
+        placed = [_at_start(solid) for solid in _cut(solids(world), world, Path(scratch))]
         renderer = BulletRenderer(world, placed, {})
         try:
             picture = renderer.take(camera, _standpoint(world)).picture
@@ -95,22 +100,27 @@ def view(world: WorldFile) -> NDArray[np.uint8]:
     return halves
 
 
-def _cut(solid: Solid, scratch: Path) -> Solid:
-    """Upright boxes and wide meshes that reach above ``CUT`` end there: they may be walls."""
+def _cut(parts: list[Solid], world: WorldFile, scratch: Path) -> list[Solid]:
+    """Under a roof everything ends at ``CUT``, else what may be a wall: upright boxes and wide meshes."""
+    if world.terrain:
+        return parts
+    everything = is_roofed(parts, world.floor)
+    return [cut for solid in parts if (cut := _cut_one(solid, everything, scratch)) is not None]
+
+
+def _cut_one(solid: Solid, under_a_roof: bool, scratch: Path) -> Solid | None:
+    """None where nothing is left."""
     parts = primitives(solid)
     low, high = parts.low.min(axis=0), parts.high.max(axis=0)
-    if high[2] <= CUT or low[2] >= CUT:
+    may_be_wall = solid.shape == "box" or (solid.shape == "mesh" and (high - low)[:2].max() > WIDE)
+    if high[2] <= CUT or solid.path is not None or not (under_a_roof or (may_be_wall and low[2] < CUT)):
         return solid
-    if solid.shape == "mesh" and (high - low)[:2].max() > WIDE:
-        below = parts.rows[parts.low[:, 2] < CUT, :9].reshape(-1, 3)
-        below[:, 2] = np.minimum(below[:, 2], CUT)
-        file = scratch / f"{len(list(scratch.iterdir()))}.stl"
-        trimesh.Trimesh(below, np.arange(len(below)).reshape(-1, 3)).export(file)
-        return Solid(solid.name, "mesh", (1.0, 1.0, 1.0), np.zeros(3), colour=solid.colour, mesh=file)
-    if solid.shape != "box" or abs(solid.orientation[1]) + abs(solid.orientation[2]) > 1e-6:
-        return solid
-    position = np.array((*solid.position[:2], (low[2] + CUT) / 2))
-    return Solid(solid.name, "box", (*solid.size[:2], float(CUT - low[2])), position, solid.orientation, solid.colour, path=solid.path)
+    vertices, faces = cut_open(*triangles(solid), CUT)
+    if not len(faces):
+        return None
+    file = scratch / f"{len(list(scratch.iterdir()))}.stl"
+    trimesh.Trimesh(vertices, faces).export(file)
+    return Solid(solid.name, "mesh", (1.0, 1.0, 1.0), np.zeros(3), colour=solid.colour, mesh=file)
 
 
 def _at_start(solid: Solid) -> Solid:

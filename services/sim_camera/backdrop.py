@@ -87,4 +87,4 @@ def _paint(picture: Picture, eye: Floats, rays: Floats, fields: Floats) -> None:
                 clear = np.exp(-reach * np.sqrt(square) / HAZE)
                 light = clear * _shade(x, y, reach * pixel * square / -dz)
             for k in range(3):
-                picture[row, column, k] = 255.0 * light * fields[field, 4 + k] + (1.0 - clear) * SKY[k]
+                picture[row, column, k] = min(255.0 * light * fields[field, 4 + k] + (1.0 - clear) * SKY[k], 255.0)

@@ -58,3 +58,8 @@ def test_tiles_pass_below_a_camera_that_moves():
 
 def test_below_the_ground_there_is_only_sky():
     assert (paint(eye=np.array((0.0, 0.0, -1.0))) == SKY).all()
+
+
+def test_white_ground_has_no_dark_tiles():
+    picture = paint(eye=np.array((0.0, 0.0, 1.0)), ground_colour=(1.0, 1.0, 1.0))
+    assert picture[80:].min() > 200

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,14 @@ from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.mesh_parts import MeshPart, box, joined
 from uvf.models.shapes.solid import Solid, pose_at
+from uvf.models.world.cutaway import cut_open, is_roofed
 from uvf.models.world.file import Wall, WorldFile
 from uvf.models.world.geometry import WALL, solids
 
 Floats = NDArray[np.float64]
 
 WALL_SHOWN = 0.9  # m: walls are cut at this height so that one looks into the rooms
+CUT = 1.4  # m, the same for everything under a roof
 FLOOR: Colour = (140, 150, 164)
 
 
@@ -31,7 +34,9 @@ def scenery(world: WorldFile) -> dict[str, Node]:
     nodes: dict[str, Node] = {"/world/floor": MeshNode(floor.vertices, floor.faces, FLOOR)}
     walls = [(wall.colour, part) for wall in world.walls for part in _segments(wall)]
     nodes.update(_merged("/world/walls", walls))
-    things = [(s.colour, _placed(s)) for s in solids(world) if s.name != WALL and s.path is None]
+    still = [s for s in solids(world) if s.name != WALL and s.path is None]
+    top = CUT if not world.terrain and is_roofed(still, world.floor) else inf
+    things = [(s.colour, part) for s in still if len((part := _placed(s, top)).faces)]
     nodes.update(_merged("/world/things", things))
     nodes.update((f"{_frame(s)}/shape", merge([at_rest(s)], rgb(s.colour))) for s in moving(world))
     return nodes
@@ -51,9 +56,10 @@ def _frame(solid: Solid) -> str:
     return f"/world/moving/{solid.name}"
 
 
-def _placed(solid: Solid) -> MeshPart:
-    """A solid's triangles in the world."""
-    return MeshPart(*triangles(solid))
+def _placed(solid: Solid, top: float) -> MeshPart:
+    """A solid's triangles in the world, up to a height [m]."""
+    vertices, faces = triangles(solid)
+    return MeshPart(*((vertices, faces) if vertices[:, 2].max() <= top else cut_open(vertices, faces, top)))
 
 
 def at_rest(solid: Solid) -> MeshPart:
