@@ -158,22 +158,24 @@ def import_(
     name: NewName,
     into: IntoOption = None,
     arg: Annotated[list[str] | None, typer.Option(help="Of the xacro, as name:=value.")] = None,
+    env: Annotated[list[str] | None, typer.Option(help="Variable of the environment for the xacro, as NAME=value.")] = None,
 ) -> None:
     """Import a third-party robot or aircraft: a folder in vehicles/, and a note of what was dropped or guessed. Checks it at once."""
     from launch.vehicles.checking import check_all
     from launch.vehicles.importing import import_vehicle
+    from uvf.models.urdf.source import XacroValues
 
     with bad_input_is_one_line():
-        arguments = dict(_pair(text) for text in arg or [])
+        values = XacroValues(dict(_pair("--arg", text, ":=") for text in arg or []), dict(_pair("--env", text, "=") for text in env or []))
         target = into or _vehicles()
-        for line in import_vehicle(source, target / name, arguments):
+        for line in import_vehicle(source, target / name, values):
             typer.echo(f"note: {line}")
         raise typer.Exit(1 if check_all([str(target / name)], target, None) else 0)
 
 
-def _pair(text: str) -> tuple[str, str]:
+def _pair(option: str, text: str, sign: str) -> tuple[str, str]:
     """Raises BadInput."""
-    name, sign, value = text.partition(":=")
-    if not sign or not name:
-        raise BadInput(f"--arg {text}: write it as name:=value")
+    name, found, value = text.partition(sign)
+    if not found or not name:
+        raise BadInput(f"{option} {text}: write it as name{sign}value")
     return name, value

@@ -6,7 +6,6 @@ from typing import Annotated
 import typer
 
 from launch.refusal import bad_input_is_one_line, counted
-from launch.settings import runs_folder
 
 world_app = typer.Typer(no_args_is_help=True, help="Worlds: list, show, check, picture, new, import.")
 
@@ -45,7 +44,7 @@ def world_show(name: NameArgument) -> None:
 def world_picture(
     name: NameArgument,
     radius: RadiusOption = BURGER,
-    out: Annotated[Path | None, typer.Option(help="By default runs/worlds/NAME.png.")] = None,
+    out: Annotated[Path | None, typer.Option(help="By default picture.png beside its world.yaml.")] = None,
 ) -> None:
     """Draw floor plan and view side by side."""
     from launch.worlds.picture import save_picture
@@ -53,7 +52,7 @@ def world_picture(
     from uvf.models.world.file import load_world
     from uvf.models.world.geometry import floor_plan
 
-    path = out or runs_folder() / "worlds" / f"{name}.png"
+    path = out or _worlds() / name / "picture.png"
     with bad_input_is_one_line():
         world = load_world(_worlds(), name)
         plan = floor_plan(world, RESOLUTION)

@@ -2,7 +2,6 @@
 
 import shutil
 import tempfile
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,6 +24,7 @@ from uvf.models.importing.sensors import sensors_section
 from uvf.models.importing.urdf import read_foreign_urdf
 from uvf.models.shapes.mesh import placed, reach
 from uvf.models.urdf.robot import UrdfModel
+from uvf.models.urdf.source import NO_VALUES, XacroValues
 from uvf.models.urdf.writer import urdf_text
 from uvf.models.yaml_data import BadInput
 
@@ -35,7 +35,7 @@ MARGIN = 3.0  # of a motor's speed without load over the largest that is asked f
 ROUND = np.column_stack([f(np.linspace(0, 2 * np.pi, 180, endpoint=False)) for f in (np.cos, np.sin, np.zeros_like)])
 
 
-def import_vehicle(source: Path, folder: Path, arguments: Mapping[str, str]) -> list[str]:
+def import_vehicle(source: Path, folder: Path, values: XacroValues = NO_VALUES) -> list[str]:
     """Imports a third-party model into ``folder``; returns the notes, also written to its import.txt. Raises BadInput."""
     check_new(folder)
     if (aircraft := jsbsim_model(source)) is not None:
@@ -43,7 +43,7 @@ def import_vehicle(source: Path, folder: Path, arguments: Mapping[str, str]) -> 
     with tempfile.TemporaryDirectory() as scratch:
         made = Path(scratch) / folder.name
         made.mkdir()
-        foreign = _read(source, arguments)
+        foreign = _read(source, values)
         foreign.model = with_own_meshes(foreign, made)
         pair = find_pair(foreign)
         model = replace(rebuilt(foreign, pair), name=folder.name)
@@ -53,10 +53,10 @@ def import_vehicle(source: Path, folder: Path, arguments: Mapping[str, str]) -> 
     return notes
 
 
-def _read(source: Path, arguments: Mapping[str, str]) -> Foreign:
+def _read(source: Path, values: XacroValues) -> Foreign:
     if not source.is_file():
         raise BadInput(f"{source}: no such file; give a .urdf, .xacro or .sdf, or the .xml of a JSBSim aircraft")
-    return read_foreign_sdf(source) if _is_sdf(source) else read_foreign_urdf(source, arguments)
+    return read_foreign_sdf(source) if _is_sdf(source) else read_foreign_urdf(source, values)
 
 
 def _is_sdf(source: Path) -> bool:

@@ -12,6 +12,7 @@ from tests.launch.vehicles.driving import drive
 from tests.launch.vehicles.foreign_robots import ROBOTS
 from uvf.models.shapes.mesh import triangles
 from uvf.models.urdf.model import load_urdf
+from uvf.models.urdf.source import XacroValues
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
 
@@ -42,7 +43,7 @@ def imported(request, tmp_path_factory):
     """Name, folder and notes."""
     root = tmp_path_factory.mktemp(request.param)
     folder = root / "vehicles" / request.param
-    return request.param, folder, import_vehicle(ROBOTS[request.param](root / "source"), folder, {})
+    return request.param, folder, import_vehicle(ROBOTS[request.param](root / "source"), folder)
 
 
 def test_it_has_no_faults(imported):
@@ -75,7 +76,7 @@ def import_one(tmp_path, name, edit=None, arguments=None):
     if edit is not None:
         assert edit[0] in source.read_text()
         source.write_text(source.read_text().replace(*edit))
-    return import_vehicle(source, tmp_path / "vehicles" / "it", arguments or {})
+    return import_vehicle(source, tmp_path / "vehicles" / "it", XacroValues(arguments or {}))
 
 
 def test_sensors_are_taken_over_with_their_figures_and_poses(tmp_path):
@@ -137,7 +138,7 @@ def test_a_pose_in_a_link_may_name_another_frame_of_the_model(tmp_path):
     for edit in ((plain, plain), (plain, named[1])):
         source = ROBOTS["gazebo_sdf"](tmp_path / "source")
         source.write_text(source.read_text().replace(*edit).replace("</model>", named[0] + "</model>"))
-        import_vehicle(source, tmp_path / "vehicles" / f"it{len(mounts)}", {})
+        import_vehicle(source, tmp_path / "vehicles" / f"it{len(mounts)}")
         mounts.append(load_vehicle(tmp_path / "vehicles", f"it{len(mounts)}").sensors.lidar.mount)
     assert mounts[1].xyz == pytest.approx(mounts[0].xyz)
     assert mounts[1].rpy == pytest.approx(mounts[0].rpy, abs=1e-6)
@@ -194,7 +195,7 @@ def test_a_joint_may_be_placed_by_its_parent_and_the_link_by_the_joint(tmp_path)
     """As sdformat writes a URDF."""
     source = ROBOTS["gazebo_sdf"](tmp_path / "source")
     plain = source.read_text()
-    import_vehicle(source, tmp_path / "vehicles" / "plain", {})
+    import_vehicle(source, tmp_path / "vehicles" / "plain")
     for side, y in (("left", 0.625029), ("right", -0.625029)):
         x = 0.554283 if side == "left" else 0.554282
         joint = f'<joint name="{side}_wheel_joint" type="revolute">'
@@ -202,7 +203,7 @@ def test_a_joint_may_be_placed_by_its_parent_and_the_link_by_the_joint(tmp_path)
         plain = plain.replace(f'relative_to="__model__">{x} {y} -0.025 -1.5707 0 0', f'relative_to="{side}_wheel_joint">0 0 0 -1.5707 0 0')
     assert plain.count('relative_to="chassis"') == plain.count('_wheel_joint">0 0 0') == 2
     source.write_text(plain)
-    import_vehicle(source, tmp_path / "vehicles" / "converted", {})
+    import_vehicle(source, tmp_path / "vehicles" / "converted")
     one, other = (load_vehicle(tmp_path / "vehicles", name).ground for name in ("plain", "converted"))
     assert (other.track, other.wheel_radius, other.radius) == pytest.approx((one.track, one.wheel_radius, one.radius), abs=1e-4)
 
@@ -222,7 +223,7 @@ def test_a_robot_on_one_wheel_or_on_wings_is_refused_with_what_to_do(tmp_path):
 def test_a_folder_that_exists_is_left_alone(tmp_path):
     import_one(tmp_path, "bare")
     with pytest.raises(BadInput, match="exists"):
-        import_vehicle(tmp_path / "source" / "carro.urdf", tmp_path / "vehicles" / "it", {})
+        import_vehicle(tmp_path / "source" / "carro.urdf", tmp_path / "vehicles" / "it")
 
 
 @pytest.mark.parametrize(
@@ -242,7 +243,7 @@ def test_a_folder_that_exists_is_left_alone(tmp_path):
 def test_a_file_that_is_no_robot_is_refused_in_one_line(tmp_path, text):
     (tmp_path / "x.urdf").write_text(text)
     with pytest.raises(BadInput) as caught:
-        import_vehicle(tmp_path / "x.urdf", tmp_path / "it", {})
+        import_vehicle(tmp_path / "x.urdf", tmp_path / "it")
     assert "\n" not in str(caught.value) and "x.urdf" in str(caught.value)
 
 
@@ -251,7 +252,7 @@ def test_a_small_part_of_a_robot_in_millimetres_is_in_millimetres_too(tmp_path):
     source = ROBOTS["gazebo_urdf"](tmp_path / "source")
     trimesh.creation.icosphere(radius=3.0).export(source.parent / "meshes" / "screw.stl")
     source.write_text(source.read_text().replace('<link name="${p}laser"/>', screw))
-    import_vehicle(source, tmp_path / "vehicles" / "it", {})
+    import_vehicle(source, tmp_path / "vehicles" / "it")
     model = load_urdf(next((tmp_path / "vehicles" / "it").glob("*.urdf")))
     (looks,) = next(link.visuals for name, link in model.links.items() if name.endswith("laser"))
     assert np.ptp(triangles(looks)[0], axis=0).max() == pytest.approx(0.006, rel=0.01)
@@ -296,7 +297,7 @@ def test_limits_that_the_makers_state_are_taken_over(tmp_path, files, limits, to
         path.parent.mkdir(exist_ok=True)
         path.write_text(text)
     source = ROBOTS["bare"](tmp_path / "source" / "description")
-    notes = import_vehicle(source, tmp_path / "vehicles" / "it", {})
+    notes = import_vehicle(source, tmp_path / "vehicles" / "it")
     ground = load_vehicle(tmp_path / "vehicles", "it").ground
     assert (ground.max_linear, ground.max_angular, ground.max_linear_acceleration) == limits
     assert any(told in line for line in notes)

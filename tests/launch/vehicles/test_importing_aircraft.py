@@ -26,7 +26,7 @@ pytestmark = pytest.mark.timeout(400)  # the trim of a whole aircraft takes minu
 def aircraft(request, tmp_path_factory):
     """Folder and notes."""
     folder = tmp_path_factory.mktemp("vehicles") / request.param
-    return folder, import_vehicle(SHIPPED / request.param, folder, {})
+    return folder, import_vehicle(SHIPPED / request.param, folder)
 
 
 def test_it_has_no_faults_and_its_notes_are_kept(aircraft):
@@ -66,7 +66,7 @@ def test_a_file_that_is_missing_is_told_with_where_to_put_it(tmp_path):
     model = shipped_copy(tmp_path, "c172x")
     (tmp_path / "systems" / "GNCUtilities.xml").unlink()
     with pytest.raises(BadInput, match=r"c172x\.xml: no 'GNCUtilities' for the system; put it into .*Systems and begin again"):
-        import_vehicle(model, tmp_path / "vehicles" / "x", {})
+        import_vehicle(model, tmp_path / "vehicles" / "x")
     assert not (tmp_path / "vehicles").exists()
 
 
@@ -78,4 +78,4 @@ def test_a_model_that_ends_the_process_is_one_line(tmp_path):
     assert count
     model.write_text(text)
     with pytest.raises(BadInput, match=r"c172p\.xml: JSBSim ends the process with this model \(SIG[A-Z]+"):
-        import_vehicle(model, tmp_path / "vehicles" / "x", {})
+        import_vehicle(model, tmp_path / "vehicles" / "x")

@@ -84,3 +84,17 @@ def test_wrong_maps_are_refused(tmp_path, yaml, part):
     (tmp_path / "m.yaml").write_text(f"image: m.pgm\nresolution: 0.5\n{yaml}\n")
     with pytest.raises(BadInput, match=part):
         import_world(tmp_path / "m.yaml", tmp_path / "worlds" / "m", Options())
+
+
+def test_a_picture_that_is_taken_for_another_is_told(tmp_path):
+    _, notes = taken(tmp_path, "origin: [0, 0, 0]", np.where(CELLS, 0, 254))
+    assert "beside it is taken" not in notes
+    (tmp_path / "m.yaml").write_text("image: depot.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n")
+    _, lines = import_world(tmp_path / "m.yaml", tmp_path / "worlds" / "again", Options())
+    assert "note: there is no depot.pgm, which the map names; m.pgm beside it is taken" in lines
+
+
+def test_a_map_without_anything_is_refused_and_leaves_nothing_behind(tmp_path):
+    with pytest.raises(BadInput, match=r"m\.yaml: no cell is occupied, so there is nothing to take over"):
+        taken(tmp_path, "origin: [0, 0, 0]", np.full((5, 5), 254))
+    assert not (tmp_path / "worlds" / "m").exists()

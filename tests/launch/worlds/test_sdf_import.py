@@ -250,6 +250,28 @@ def test_a_solid_block_is_no_ground(tmp_path):
     assert world.boxes[0].centre == pytest.approx((0.0, 0.0, 15.0))
 
 
+def test_a_world_of_which_nothing_can_be_taken_over_is_refused_with_the_reasons(tmp_path):
+    with pytest.raises(BadInput, match=r"nothing in it can be taken over: models not found.*shelf"):
+        taken(tmp_path, "<include><uri>model://shelf</uri></include>")
+    assert not (tmp_path / "worlds" / "w").exists()
+
+
+def test_a_world_that_cannot_be_imported_leaves_the_one_that_it_was_to_replace(tmp_path):
+    taken(tmp_path, model("a", UNIT))
+    broken = tmp_path / "broken.world"
+    broken.write_text("<sdf><world name='w'><include><uri>model://shelf</uri></include></world></sdf>")
+    with pytest.raises(BadInput):
+        import_world(broken, tmp_path / "worlds" / "w", Options(replace=True))
+    assert len(load_world(tmp_path / "worlds", "w").boxes) == 1
+    assert [path.name for path in (tmp_path / "worlds").iterdir()] == ["w"]
+
+
+def test_a_world_that_is_a_floor_and_nothing_else_is_taken_over(tmp_path):
+    plane = "<collision name='c'><geometry><plane><normal>0 0 1</normal><size>9 9</size></plane></geometry></collision>"
+    world, _ = taken(tmp_path, model("ground", plane))
+    assert not solids(world)
+
+
 def test_an_upright_plane_is_a_wall(tmp_path):
     plane = "<collision name='c'><geometry><plane><normal>1 0 0</normal><size>4 3</size></plane></geometry></collision>"
     world, _ = taken(tmp_path, model("wall", plane, "<pose>2 0 1.5 0 0 0</pose>"))

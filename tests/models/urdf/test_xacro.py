@@ -5,7 +5,7 @@ import os
 import pytest
 
 from uvf.models.urdf.marked import LINE
-from uvf.models.urdf.source import read_xml
+from uvf.models.urdf.source import XacroValues, read_xml
 from uvf.models.yaml_data import BadInput
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -39,7 +39,7 @@ def links(package):
     def read(*lines, arguments=None, note=None):
         path = package / "robot/urdf/bot.urdf.xacro"
         path.write_text(robot(*lines))
-        found = read_xml(path, arguments, note)
+        found = read_xml(path, XacroValues(arguments or {}), note)
         return {tag.get("name"): os.path.relpath(tag.get(LINE), package) for tag in found.findall("link")}
 
     return read
@@ -97,7 +97,7 @@ def test_what_is_not_reached_need_not_be_there_or_whole(links, missing):
 def test_figures_are_read_from_yaml_and_arguments(package):
     path = package / "robot/bot.xacro"
     path.write_text(robot("<link name=\"${xacro.load_yaml('$(find parts)/size.yaml').wheel.radius} $(arg name)\"/>"))
-    assert read_xml(path, {"name": "x"}).find("link").get("name") == "0.25 x"
+    assert read_xml(path, XacroValues({"name": "x"})).find("link").get("name") == "0.25 x"
 
 
 def test_names_of_files_in_the_robot_are_those_of_the_originals(package):
@@ -146,3 +146,20 @@ def test_of_a_strangers_robot_what_is_not_there_is_left_out_and_noted(links):
     assert list(links(*lines, note=notes.append)) == ["base"]
     assert notes[0] == "included file not found, left out: nowhere/x.xacro"
     assert notes[1].endswith("robot/urdf/2.xacro")
+
+
+def test_macros_of_a_file_that_is_not_there_are_told_as_that_file(links):
+    with pytest.raises(BadInput, match=r"unknown macro name: xacro:arm; .*not there.*: elsewhere/arm\.xacro$"):
+        links('<xacro:include filename="$(find elsewhere)/arm.xacro"/>', "<xacro:arm/>", note=lambda text: None)
+
+
+def test_parts_are_turned_on_by_the_environment_and_those_that_can_be_are_told(package, monkeypatch):
+    monkeypatch.delenv("BOT_LASER", raising=False)
+    path, told = package / "robot/urdf/bot.urdf.xacro", []
+    lines = ('<xacro:if value="$(optenv BOT_LASER 0)"><link name="laser"/></xacro:if>', '<link name="$(optenv BOT_NAME it)"/>')
+    path.write_text(robot(*lines))
+    assert [link.get("name") for link in read_xml(path, note=told.append).findall("link")] == ["it"]
+    assert told == ["parts that --env NAME=1 or NAME=0 turns on or off: BOT_LASER"]
+    given = XacroValues(environment={"BOT_LASER": "1", "BOT_NAME": "that"})
+    assert [link.get("name") for link in read_xml(path, given).findall("link")] == ["laser", "that"]
+    assert "BOT_LASER" not in os.environ

@@ -20,8 +20,10 @@ MANY = 3000  # boxes
 
 def map_world(path: Path, height: float, notes: Notes) -> WorldFile:
     """A world with walls of ``height`` [m] where the map is occupied. Raises BadInput."""
-    grid = load_map(path)
+    grid = load_map(path, notes.add)
     occupied, known = grid.cells >= OCCUPIED_FROM, grid.cells >= 0
+    if not occupied.any():
+        raise BadInput(f"{path}: no cell is occupied, so there is nothing to take over; look at negate and the thresholds")
     rectangles = greedy_rectangles(occupied)
     notes.add(f"{int(occupied.sum())} occupied cells of {grid.resolution:g} m became {len(rectangles)} boxes")
     if len(rectangles) > MANY:

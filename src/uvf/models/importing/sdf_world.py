@@ -68,6 +68,7 @@ class SdfImport:
         element = root if found is None else found
         for insertion in element.findall("state/insertions"):
             element.extend(insertion.findall("model") + insertion.findall("include"))
+        has_models = any(True for _ in element.iter("model", "include"))
         self._models.expand(element)
         self._states = saved_states(element)
         self._tell_dropped(root, element)
@@ -79,9 +80,15 @@ class SdfImport:
             if model.get("name") not in gone
             for thing in self._model(self._placed(model, scope, ("", IDENTITY)))
         ]
+        if has_models and not things and not self._planes:
+            raise BadInput(f"{self._path}: nothing in it can be taken over{self._why()}")
         first = element.find("model")
         about = f"Imported from {self._path.name}: {element.get('name') or ('' if first is None else first.get('name'))}."
         return SdfGround(self._folder, self.notes).levelled(self._settings(element, about), things, self._planes)
+
+    def _why(self) -> str:
+        said = self.notes.lines()
+        return f": {'; '.join(said)}" if said else ""
 
     def _placed(self, model: Any, around: Scope, owner: tuple[str, Transform]) -> _Placed:
         """A model of ``around`` where it was when saved, else where the file puts it; owner: its path with ``::`` and world_from_owner."""

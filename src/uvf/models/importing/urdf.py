@@ -1,6 +1,5 @@
 """URDF and xacro of others: ROS packages, SolidWorks' exporter, Gazebo's tags."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -8,16 +7,16 @@ from uvf.models.importing.notes import Notes
 from uvf.models.importing.robot import Foreign, ForeignSensor
 from uvf.models.importing.sdf_poses import FILE, transform
 from uvf.models.urdf.reader import read_model
-from uvf.models.urdf.source import read_xml
+from uvf.models.urdf.source import XacroValues, read_xml
 from uvf.models.yaml_data import BadInput
 
 GIVEN = {"material", "mu1", "mu2", "mu", "kp", "kd", "selfCollide", "turnGravityOff", "gravity", "minDepth", "maxVel", "static", "fdir1"}
 
 
-def read_foreign_urdf(path: Path, arguments: Mapping[str, str]) -> Foreign:
+def read_foreign_urdf(path: Path, values: XacroValues) -> Foreign:
     """The robot that a URDF or xacro file describes. Raises BadInput where it is no URDF or xacro cannot expand it."""
     notes = Notes()
-    robot = read_xml(path, arguments, note=notes.add)
+    robot = read_xml(path, values, note=notes.add)
     if robot.tag != "robot":
         raise BadInput(f"{path}: the outermost tag is <{robot.tag}>; a URDF begins with <robot>, an SDF ends in .sdf")
     model = read_model(path, robot)

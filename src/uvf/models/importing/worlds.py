@@ -2,6 +2,7 @@
 
 import re
 import shutil
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -31,17 +32,19 @@ class Options(NamedTuple):
 
 def import_world(file: Path, folder: Path, options: Options) -> tuple[Path, list[str]]:
     """Imports a world; returns the new world.yaml and lines about what is in it and what was left out. Raises BadInput."""
-    make_room(folder, options.replace)
+    _refuse_taken(folder, options.replace)
     if not file.is_file():
         raise BadInput(f"{file}: no such file")
-    try:
-        world, notes = _read(file, folder, options)
-        path = write_world(world, folder, [f"note: {note}" for note in notes])
-        load_world(folder.parent, folder.name)
-    except BadInput:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
-    return path, [*(f"note: {note}" for note in notes), _counts(world)]
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".import-", dir=folder.parent) as scratch:
+        made = Path(scratch) / folder.name
+        made.mkdir()
+        world, notes = _read(file, made, options)
+        written = write_world(world, made, [f"note: {note}" for note in notes])
+        load_world(made.parent, made.name)
+        make_room(folder, options.replace)
+        made.rename(folder)
+    return folder / written.name, [*(f"note: {note}" for note in notes), _counts(world)]
 
 
 def new_folder(worlds: Path, name: str) -> Path:
@@ -53,9 +56,13 @@ def new_folder(worlds: Path, name: str) -> Path:
 
 def make_room(folder: Path, replace: bool) -> None:
     """Removes a folder that is there already when it may be replaced. Raises BadInput when it may not."""
+    _refuse_taken(folder, replace)
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def _refuse_taken(folder: Path, replace: bool) -> None:
     if folder.exists() and not replace:
         raise BadInput(f"{folder} is there already; give another --name, or --replace to overwrite it")
-    shutil.rmtree(folder, ignore_errors=True)
 
 
 def _read(file: Path, folder: Path, options: Options) -> tuple[WorldFile, list[str]]:

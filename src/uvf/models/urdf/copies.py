@@ -20,6 +20,7 @@ from uvf.models.yaml_data import BadInput
 
 FIND = re.compile(r"\$\(find\s+([^)]+?)\s*\)")
 COMPUTED = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
+SWITCH = re.compile(r"\$\(optenv\s+(\w+)\s+(?:0|1|true|false)\s*\)", re.IGNORECASE)
 WILD = re.compile(r"[*?[]")
 DATA = (".yaml", ".yml")  # read by expressions
 NOTHING = b"<robot/>"
@@ -37,6 +38,10 @@ class Copies:
         self._files, self._packages = f"{scratch}/files", f"{scratch}/packages"
         self._optional: list[re.Pattern[str]] = []
         self._done: set[str] = set()
+        self.missed: list[str] = []
+        """Files that are included and not there."""
+        self.switches: set[str] = set()
+        """Variables of the environment that turn a part of the robot on or off."""
         self.main = f"{self._files}{path.absolute()}"
         self._copy(path, self.main)
 
@@ -72,6 +77,7 @@ class Copies:
         root = marked(original, self._shown(original))
         for tag in root.iter(etree.Element):
             for key, value in tag.items():
+                self.switches.update(SWITCH.findall(value))
                 tag.set(key, FIND.sub(self._found, value))
             tag.text = FIND.sub(self._found, tag.text) if tag.text else tag.text
         includes = [tag for space in XACRO_SPACES for tag in root.iter(f"{{{space}}}include")]
@@ -139,7 +145,8 @@ class Copies:
         original = self.original_names(name)
         if self._note is None:
             raise BadInput(f"{self.path}: included file '{self._shown(Path(original))}' is not there; put it there or mend its name")
-        self._note(f"included file not found, left out: {original.removeprefix('/package/')}")
+        self.missed.append(original.removeprefix("/package/"))
+        self._note(f"included file not found, left out: {self.missed[-1]}")
 
     def _shown(self, original: Path) -> Path:
         """As the user writes it: below the folder he is in, where the file to expand was so named."""

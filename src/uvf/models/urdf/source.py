@@ -1,12 +1,14 @@
 """The XML of a URDF: xacro expanded, every link and joint knowing its line."""
 
 import io
+import os
 import re
 import tempfile
-from collections.abc import Callable, Mapping
-from contextlib import redirect_stderr
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, redirect_stderr
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import xacro
 from lxml import etree
@@ -21,10 +23,21 @@ MATCHED_NOTHING = re.compile('filename spec "(.+)" matched no files')
 Note = Callable[[str], None]
 
 
-def read_xml(path: Path, arguments: Mapping[str, str] | None = None, note: Note | None = None) -> Any:
+class XacroValues(NamedTuple):
+    """What a xacro is given: its arguments, and variables of the environment that are set while it is expanded."""
+
+    arguments: Mapping[str, str] = MappingProxyType({})
+    environment: Mapping[str, str] = MappingProxyType({})
+
+
+NO_VALUES = XacroValues()
+
+
+def read_xml(path: Path, values: XacroValues = NO_VALUES, note: Note | None = None) -> Any:
     """Root element of a URDF, xacro expanded; ``uvf_line`` of links and joints is "file:line" where they are written.
 
-    note: is told of included files that are not there, which then are left out; without it they are an error. Raises BadInput.
+    note: is told of included files that are not there, which then are left out, and of variables of the environment that turn parts
+    on and off; without it missing files are an error. Raises BadInput.
     """
     if not is_file(path):
         known = (p.name for pattern in ("*.urdf", "*.xacro") for p in path.parent.glob(pattern))
@@ -34,12 +47,27 @@ def read_xml(path: Path, arguments: Mapping[str, str] | None = None, note: Note 
         return root
     with tempfile.TemporaryDirectory(prefix="uvf-xacro-") as scratch:
         copies = Copies(path, Path(scratch), note)
-        expanded = etree.fromstring(_expanded(copies, dict(arguments or {})))
+        with _environment(values.environment):
+            expanded = etree.fromstring(_expanded(copies, dict(values.arguments)))
+        if note is not None and (others := sorted(copies.switches - set(values.environment))):
+            note(f"parts that --env NAME=1 or NAME=0 turns on or off: {', '.join(others)}")
         for tag in expanded.iter(etree.Element):
             for key, value in tag.items():
                 tag.set(key, copies.original_names(value))
             tag.text = copies.original_names(tag.text) if tag.text else tag.text
         return expanded
+
+
+@contextmanager
+def _environment(values: Mapping[str, str]) -> Iterator[None]:
+    """xacro reads the environment of its process."""
+    before = dict(os.environ)
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        os.environ.clear()
+        os.environ.update(before)
 
 
 def _expanded(copies: Copies, arguments: dict[str, str]) -> bytes:
@@ -75,4 +103,7 @@ def _missing(error: BaseException | None) -> str:
 
 
 def _refusal(copies: Copies, reason: object, remedy: str) -> BadInput:
+    """Macros of a file that is not there are unknown: then it is that file that is missing."""
+    if copies.missed:
+        remedy = f"it includes files that are not there, so put their packages in a folder about it: {', '.join(copies.missed)}"
     return BadInput(f"{copies.path}: xacro cannot expand it: {one_line(copies.original_names(str(reason)))}; {remedy}")

@@ -6,7 +6,7 @@ http://wiki.ros.org/map_server#Map_format and nav2_map_server. The picture's top
 import io
 import json
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -60,8 +60,11 @@ class GridMap:
     origin: Pose2
 
 
-def load_map(path: str | Path) -> GridMap:
-    """Map of a yaml file, or of a picture when the yaml lies beside it under the same name. Raises BadInput."""
+def load_map(path: str | Path, note: Callable[[str], None] = lambda _: None) -> GridMap:
+    """Map of a yaml file, or of a picture when the yaml lies beside it under the same name. Raises BadInput.
+
+    note: is told where another picture is taken than the yaml names.
+    """
     path = Path(path)
     if path.suffix not in YAML:
         if path.suffix and path.suffix.lower() not in PICTURES:
@@ -74,7 +77,10 @@ def load_map(path: str | Path) -> GridMap:
         raise BadInput(f"{path}: free_thresh: {file.free_thresh:g} is not below occupied_thresh, {file.occupied_thresh:g}")
     if len(file.origin) not in (2, 3):
         raise BadInput(f"{path}: origin: {file.origin}; write x, y [m] and yaw [rad]")
-    cells = _meant(_pixels(_picture(path, file.image)), file)
+    picture = _picture(path, file.image)
+    if picture.name != Path(file.image).name:
+        note(f"there is no {file.image}, which the map names; {picture.name} beside it is taken")
+    cells = _meant(_pixels(picture), file)
     yaw = file.origin[2] if len(file.origin) == 3 else 0.0
     return GridMap(np.flipud(cells), file.resolution, Pose2(file.origin[0], file.origin[1], yaw))
 
