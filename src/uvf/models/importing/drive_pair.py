@@ -77,9 +77,11 @@ def find_pair(foreign: Foreign) -> DrivePair:
     pairs = [(a, b) for a, b in combinations(wheels, 2) if _opposite(a, b)]
     if not pairs:
         found = ", ".join(w.joint.name for w in wheels) or "none"
+        fixed = ", ".join(name for name, joint in model.joints.items() if not _may_turn(joint) and "wheel" in name.lower())
+        held = f"; wheels that are fixed: {fixed}" if fixed else ""
         raise BadInput(
-            f"{model.path}: no two wheels of one size on one axis; joints that turn: {found}. UVF drives two wheels on one axle: "
-            "make their joints continuous, give both a shape, name them ..._left... and ..._right..."
+            f"{model.path}: no two wheels of one size on one axis; joints that turn: {found}{held}. "
+            "UVF drives two wheels on one axle: make their joints continuous, give both a shape, name them ..._left... and ..._right..."
         )
     middle = np.mean([p.translation for p in model.link_poses().values()], axis=0)
     best = max(pairs, key=lambda pair: _score(pair, foreign, middle))

@@ -103,7 +103,9 @@ def _missing(error: BaseException | None) -> str:
 
 
 def _refusal(copies: Copies, reason: object, remedy: str) -> BadInput:
-    """Macros of a file that is not there are unknown: then it is that file that is missing."""
+    """Macros of a file that is not there are unknown: then it is that file that is missing, often of the macro's name."""
     if copies.missed:
-        remedy = f"it includes files that are not there, so put their packages in a folder about it: {', '.join(copies.missed)}"
+        macro = str(reason).rpartition(":")[2].strip()
+        files = [file for file in copies.missed if macro and macro in file] or copies.missed
+        remedy = f"it includes files that are not there, so put their packages in a folder about it: {', '.join(files)}"
     return BadInput(f"{copies.path}: xacro cannot expand it: {one_line(copies.original_names(str(reason)))}; {remedy}")
