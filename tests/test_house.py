@@ -15,7 +15,7 @@ TABLES = {"schemas/topics.py"}
 ENGINES = {
     "zenoh": ["src/uvf/runtime/bus/zenoh_bus.py"],
     "mcap": [f"src/uvf/runtime/log/{name}.py" for name in ("reading", "recording", "recovery")],
-    "pybullet": ["services/sim_camera/renderer.py", "services/sim_ground/world.py"],
+    "pybullet": ["services/sim_camera/renderer.py", "services/sim_ground/engine.py"],
     "jsbsim": ["services/sim_air/engine/airframe.py"],
     "pymavlink": ["src/uvf/mavlink/generate.py"],
     "sdl2": ["launch/teleop/gamepad.py"],

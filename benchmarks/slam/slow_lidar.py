@@ -98,7 +98,7 @@ def driven(site: Scenario, pace: Twist, duration: float, log: Path) -> None:
     """Drives for ``duration`` [s] in lockstep with mapping, and leaves the log."""
     ground = site.members[VEHICLE].file.ground
     assert ground is not None
-    drive = DifferentialDrive(ground.wheel_radius, ground.track)
+    drive = ground.drive.kinematics
     lockstep = Lockstep([*simulator(site), *slam(site), ServiceInstance(Eights, lambda: Eights(drive, pace), VEHICLE)])
     with Recorder(log, attachments(site)) as recorder:
         recorder.follow(lockstep.bus)

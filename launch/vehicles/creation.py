@@ -50,10 +50,11 @@ kind: ground
 
 ground:
   urdf: {name}.urdf.xacro
-  left_joint: wheel_left_joint
-  right_joint: wheel_right_joint
-  wheel_radius: {wheel_radius:.4g}
-  track: {track:.4g}
+  drive:
+    left: wheel_left_joint
+    right: wheel_right_joint
+    wheel_radius: {wheel_radius:.4g}
+    track: {track:.4g}
   radius: {outline:.4g}
   max_linear: 0.5
   max_angular: 1.5

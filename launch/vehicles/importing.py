@@ -2,6 +2,7 @@
 
 import shutil
 import tempfile
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,14 +15,15 @@ from launch.vehicles.importing_air import import_aircraft
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.se3 import compose
 from uvf.models.importing.controllers import limits_of_controllers
-from uvf.models.importing.drive_pair import DrivePair, find_pair
+from uvf.models.importing.drive_wheels import DriveWheels, find_wheels
 from uvf.models.importing.jsbsim import jsbsim_model
 from uvf.models.importing.meshes import with_own_meshes
-from uvf.models.importing.rebuilt import rebuilt
+from uvf.models.importing.rebuilt import rebuilt, wheel_names
 from uvf.models.importing.robot import Foreign, StatedLimits
 from uvf.models.importing.sdf_robot import read_foreign_sdf
 from uvf.models.importing.sensors import sensors_section
 from uvf.models.importing.urdf import read_foreign_urdf
+from uvf.models.importing.wheel_guess import WheelGuess
 from uvf.models.shapes.mesh import placed, reach
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.urdf.source import NO_VALUES, XacroValues
@@ -45,9 +47,9 @@ def import_vehicle(source: Path, folder: Path, values: XacroValues = NO_VALUES) 
         made.mkdir()
         foreign = _read(source, values)
         foreign.model = with_own_meshes(foreign, made)
-        pair = find_pair(foreign)
-        model = replace(rebuilt(foreign, pair), name=folder.name)
-        notes = _write(made, source, foreign, (pair, model))
+        wheels = find_wheels(foreign)
+        model = replace(rebuilt(foreign, wheels), name=folder.name)
+        notes = _write(made, source, foreign, (wheels, model))
         folder.parent.mkdir(parents=True, exist_ok=True)
         shutil.copytree(made, folder)
     return notes
@@ -65,16 +67,16 @@ def _is_sdf(source: Path) -> bool:
     return "<sdf" in source.read_text(encoding="utf-8", errors="replace")[:2000]
 
 
-def _write(folder: Path, source: Path, foreign: Foreign, made: tuple[DrivePair, UrdfModel]) -> list[str]:
-    pair, model = made
-    wheels = f"{pair.left.joint.name} (left) and {pair.right.joint.name} (right)"
-    foreign.notes.add(f"guessed: {wheels} drive; wheel radius {pair.radius:.4g} m, track {pair.track:.4g} m")
-    _compare(foreign, pair)
-    base_from_link = {name: compose(pair.base_from_root, pose) for name, pose in foreign.model.link_poses().items()}
+def _write(folder: Path, source: Path, foreign: Foreign, made: tuple[DriveWheels, UrdfModel]) -> list[str]:
+    wheels, model = made
+    sides = f"{_named(wheels.left)} (left) and {_named(wheels.right)} (right)"
+    foreign.notes.add(f"guessed: {sides} drive; wheel radius {wheels.radius:.4g} m, track {wheels.track:.4g} m")
+    _compare(foreign, wheels)
+    base_from_link = {name: compose(wheels.base_from_root, pose) for name, pose in foreign.model.link_poses().items()}
     data = {
         "about": f"{foreign.model.name}, imported from {source.name}.",
         "kind": "ground",
-        "ground": _ground(folder.name, pair, model, _limits(source, foreign)),
+        "ground": _ground(folder.name, wheels, model, _limits(source, foreign)),
         "sensors": sensors_section(foreign, base_from_link),
     }
     foreign.notes.add("guessed: motors; set them in vehicle.yaml")
@@ -91,9 +93,13 @@ def _write(folder: Path, source: Path, foreign: Foreign, made: tuple[DrivePair, 
     return lines
 
 
-def _compare(foreign: Foreign, pair: DrivePair) -> None:
+def _named(wheels: Sequence[WheelGuess]) -> str:
+    return ", ".join(wheel.joint.name for wheel in wheels)
+
+
+def _compare(foreign: Foreign, wheels: DriveWheels) -> None:
     """The shapes count; a plugin that says otherwise is told of."""
-    for name, told, found in (("track", foreign.drive.track, pair.track), ("wheel radius", foreign.drive.wheel_radius, pair.radius)):
+    for name, told, found in (("track", foreign.drive.track, wheels.track), ("wheel radius", foreign.drive.wheel_radius, wheels.radius)):
         if told is not None and abs(told - found) > 0.03 * found:
             foreign.notes.add(f"the plugin's {name} of {told:g} m is not that of the shapes, which counts: {found:.4g} m")
 
@@ -111,33 +117,38 @@ def _limits(source: Path, foreign: Foreign) -> StatedLimits:
     return stated
 
 
-def _ground(name: str, pair: DrivePair, model: UrdfModel, limits: StatedLimits) -> dict[str, Any]:
+def _ground(name: str, wheels: DriveWheels, model: UrdfModel, limits: StatedLimits) -> dict[str, Any]:
     poses = model.link_poses()
     solids = [placed(s, poses[n]) for n, link in model.links.items() for s in link.collisions]
     outline = max(float(reach(s, ROUND).max()) for s in solids)
     fastest = limits.linear or SPEED
     acceleration = limits.linear_acceleration or ACCELERATION
-    spin = min(4.0, 4 * acceleration / pair.track)
+    spin = min(4.0, 4 * acceleration / wheels.turning_track)
     mass = sum(link.inertial.mass for link in model.links.values() if link.inertial is not None)
     return {
         "urdf": f"{name}.urdf",
-        "left_joint": "wheel_left_joint",
-        "right_joint": "wheel_right_joint",
-        "wheel_radius": round(pair.radius, 6),
-        "track": round(pair.track, 6),
+        "drive": _drive(wheels),
         "radius": round(outline + 0.002, 4),
         "max_linear": fastest,
-        "max_angular": limits.angular or float(f"{min(2.0, 2 * fastest / pair.track):.3g}"),
+        "max_angular": limits.angular or float(f"{min(2.0, 2 * fastest / wheels.turning_track):.3g}"),
         "max_linear_acceleration": acceleration,
-        "max_angular_acceleration": float(f"{min(limits.angular_acceleration or spin, 2 * TRACTION / pair.track):.3g}"),
+        "max_angular_acceleration": float(f"{min(limits.angular_acceleration or spin, 2 * TRACTION / wheels.turning_track):.3g}"),
         "motor": {
-            "stall_torque": float(f"{0.4 * mass * GRAVITY * pair.radius:.3g}"),
-            "no_load_speed": float(f"{MARGIN * _fastest_wheel(fastest, limits, pair) / pair.radius:.3g}"),
+            "stall_torque": float(f"{0.4 * mass * GRAVITY * wheels.radius:.3g}"),
+            "no_load_speed": float(f"{MARGIN * _fastest_wheel(fastest, limits, wheels) / wheels.radius:.3g}"),
             "lag": 0.03,
         },
     }
 
 
-def _fastest_wheel(fastest: float, limits: StatedLimits, pair: DrivePair) -> float:
+def _drive(wheels: DriveWheels) -> dict[str, Any]:
+    joints = {side: [f"{name}_joint" for name in wheel_names(side, len(wheels.left))] for side in ("left", "right")}
+    sizes = {"wheel_radius": round(wheels.radius, 6), "track": round(wheels.track, 6)}
+    if len(wheels.left) == 1:
+        return {side: names[0] for side, names in joints.items()} | sizes
+    return {"kind": "skid_steer", **joints, **sizes, "effective_track": round(wheels.turning_track, 4)}
+
+
+def _fastest_wheel(fastest: float, limits: StatedLimits, wheels: DriveWheels) -> float:
     """m/s of a wheel's tread, straight on or turning on the spot."""
-    return max(fastest, (limits.angular or 0.0) * pair.track / 2)
+    return max(fastest, (limits.angular or 0.0) * wheels.turning_track / 2)

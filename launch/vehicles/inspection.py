@@ -97,7 +97,7 @@ def _inspect_body(found: Inspection, urdf: Path) -> None:
         found.faults += [line for line in [str(error)] if line not in found.faults]  # told already where a sensor sits on a link
         return
     ground = found.file.ground if found.file is not None else None
-    wheels = (ground.left_joint, ground.right_joint) if ground is not None else ()
+    wheels = ground.drive.joints if ground is not None else ()
     faults = [str(fault) for fault in (*wheel_faults(model, wheels), *model_faults(model))]
     found.faults += [line for line in dict.fromkeys(faults) if line not in found.faults]
     if found.file is not None and ground is not None and len(model.roots) == 1 and all(w in model.joints for w in wheels):

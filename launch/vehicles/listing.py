@@ -45,7 +45,9 @@ def vehicle_figures(file: VehicleFile, model: UrdfModel | None) -> Table:
 
 
 def _ground_rows(ground: GroundBody) -> Iterator[tuple[str, str]]:
-    yield "wheels", f"radius {ground.wheel_radius:g} m, track {ground.track:g} m"
+    drive = ground.drive
+    turning = f", turns as with {drive.effective_track:g} m" if drive.effective_track is not None else ""
+    yield "drive", f"{drive.kind}, {len(drive.joints)} wheels of radius {drive.wheel_radius:g} m, track {drive.track:g} m{turning}"
     yield "body", f"within {ground.radius:g} m of base_link"
     yield (
         "limits",

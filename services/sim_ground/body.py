@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
-from uvf.maths.kinematics import WheelSpeeds
 
 Floats = NDArray[np.float64]
 Three = tuple[float, float, float]
@@ -22,19 +21,28 @@ class Touch(NamedTuple):
     bearing: float
 
 
+class LinkMotion(NamedTuple):
+    """Of a link's centre of mass in the world: position (3,) [m], orientation (4,), velocity [m/s], angular velocity [rad/s], each (3,)."""
+
+    position: Floats
+    orientation: Floats
+    velocity: Floats
+    angular_velocity: Floats
+
+
 class BodyState(NamedTuple):
     """Motion of base_link: the point on the floor under the axle's middle.
 
     position: (3,) m, world; velocity: (3,) m/s, world; world_from_body: wxyz; angular_velocity: (3,) rad/s, body (FLU);
-    wheel_angles: left, right [rad] since the start, unwrapped.
+    wheel_angles: of each driven wheel, the left side first [rad] since the start, unwrapped; wheel_speeds likewise [rad/s].
     """
 
     position: Floats
     world_from_body: Floats
     velocity: Floats
     angular_velocity: Floats
-    wheel_angles: tuple[float, float]
-    wheel_speeds: WheelSpeeds
+    wheel_angles: tuple[float, ...]
+    wheel_speeds: tuple[float, ...]
 
 
 @compiled

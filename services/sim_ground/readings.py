@@ -29,7 +29,7 @@ def contact_message(t: float, bumpers: Sequence[Bumper], touches: Sequence[Touch
 
 def joints_message(t: float, ground: GroundBody, body: BodyState) -> JointStates:
     """Wheel angles [rad] and speeds [rad/s] as a message stamped ``t`` [s]."""
-    rows = zip((ground.left_joint, ground.right_joint), body.wheel_angles, body.wheel_speeds, strict=True)
+    rows = zip(ground.drive.joints, body.wheel_angles, body.wheel_speeds, strict=True)
     joints = [JointState(name=name, position=angle, velocity=speed) for name, angle, speed in rows]
     return JointStates(timestamp=stamp(t), joints=joints)
 

@@ -20,13 +20,17 @@ BEARS = 0.7  # upward share of a contact's normal: steps up to 0.3 of a wheel's 
 
 
 class EngineContact(NamedTuple):
-    """A contact of a vehicle. other: the body touched; link: the vehicle's; place (3,) [m, world], normal towards the vehicle; gap [m]."""
+    """A contact of a vehicle. other: the body touched; link: the vehicle's; place (3,) [m, world], normal towards the vehicle.
+
+    gap [m]; load: along the normal in the last step [N].
+    """
 
     other: int
     link: int
     place: Three
     normal: Three
     gap: float
+    load: float
 
 
 class Bodies:

@@ -199,7 +199,10 @@ VEHICLES = {
     "ranges inside out": ("sensors.lidar.range_min", 5.0, "range_min: 5 m is not below range_max, 3.5 m"),
     "a mount turned by degrees": ("sensors.lidar.mount.rpy", [0.0, 0.0, 90], "mount: rpy[2]: 90 is above 7: it is in radians"),
     "a rate of zero": ("sensors.imu.hz", 0.0, "sensors: imu: hz: 0 is below 0.01 Hz"),
-    "one wheel": ("ground.right_joint", "wheel_left_joint", "right_joint: the left wheel's joint too"),
+    "one wheel": ("ground.drive.right", "wheel_left_joint", "right: wheel_left_joint is a wheel of the left side too"),
+    "two wheels that are to scrub": ("ground.drive.kind", "skid_steer", "left: one wheel, but skid steer has several on each side"),
+    "several wheels that are not": ("ground.drive.left", ["a", "b"], "left: 2 wheels, but a differential drive has one on each side"),
+    "scrub of two wheels": ("ground.drive.effective_track", 0.2, "effective_track: two wheels do not scrub; leave it out"),
     "another kind": ("kind", "fixed_wing", "kind is 'fixed_wing' but there is no 'air:' section"),
 }
 

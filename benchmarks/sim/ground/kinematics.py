@@ -16,7 +16,7 @@ import numpy as np
 
 from services.sim_ground.world import BodyPlacement, BulletWorld
 from uvf.control.drive_limits import DriveLimits, VelocityRamp
-from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds, move
+from uvf.maths.kinematics import Twist, WheelSpeeds, move
 from uvf.maths.rotations import to_euler, wrap
 from uvf.maths.se2 import Pose2
 from uvf.models.scenario import ROOT
@@ -62,14 +62,14 @@ def drives(body: GroundBody) -> Iterator[Drive]:
         speed = min(linear, radius * angular)
         yield Drive(f"arc {radius:g} m", Twist(speed, speed / radius), np.pi * radius / speed)
     yield Drive("spot turn", Twist(0.0, angular), 2 * np.pi / angular)
-    turning = min(angular, linear / (body.track / 2))
-    yield Drive("left wheel stopped", Twist(turning * body.track / 2, turning), 2 * np.pi / turning)
+    turning = min(angular, linear / (body.drive.track / 2))
+    yield Drive("left wheel stopped", Twist(turning * body.drive.track / 2, turning), 2 * np.pi / turning)
 
 
 def drive(body: GroundBody, urdf: Path, wanted: Drive) -> Driven:
     """One drive in PyBullet alone: poses asked for, rolled by the wheels, and true."""
     world = BulletWorld([], {"one": BodyPlacement(body, engine_urdf(urdf), (0.0, 0.0, 0.0))})
-    wheels, ramp = DifferentialDrive(body.wheel_radius, body.track), VelocityRamp(_limits(body, wanted.twist))
+    wheels, ramp = body.drive.kinematics, VelocityRamp(_limits(body, wanted.twist))
     first = _pose(world)
     driven = Driven([first], [first], [first])
     before = world.state("one").wheel_angles
@@ -108,7 +108,7 @@ def apart(a: Pose2, b: Pose2) -> float:
 
 def figures(body: GroundBody, driven: Driven) -> dict[str, float]:
     """Errors of position and heading, slip and creep [%], as the module states them."""
-    wheels = DifferentialDrive(body.wheel_radius, body.track)
+    wheels = body.drive.kinematics
     wanted, rolled, true = driven
     turn = sum(wrap(q.yaw - p.yaw) for p, q in pairwise(wanted))
     missed = sum(wrap(q.yaw - p.yaw) for p, q in pairwise(true)) - turn

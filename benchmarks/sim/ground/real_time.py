@@ -87,7 +87,7 @@ def engine(site: Scenario) -> list[float]:
         stepped(service, n / 100, commands=commands, truth={}, flying=None, spawn=[], remove=[], set_pose=[], save=[], restore=[])
     with stopwatch() as taken:
         for _ in range(round(SECONDS * world.rate)):
-            pybullet.stepSimulation(physicsClientId=world._client)
+            pybullet.stepSimulation(physicsClientId=world.engine.client)
     service.close()
     return taken
 

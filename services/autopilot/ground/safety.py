@@ -63,7 +63,7 @@ class GroundFailsafeMonitor:
         self._keep = body.radius, body.max_linear_acceleration
         self._link = LinkWatch()
         self._times = {"pose_age": 0.0, "setpoint_age": 0.0}
-        self._wheels = WheelSpeedometer(body.wheel_radius)
+        self._wheels = WheelSpeedometer(body.drive.wheel_radius)
         self._grip, self._tilt, self._sight = StuckDetector(self._wheels), TiltEstimate(imu_rpy), SensorWatch(sweeping)
         self._fenced = self._driven = False
         self.is_outside = False

@@ -33,7 +33,7 @@ from services.autopilot.multiplexing import DISARMED_OFFBOARD, Once
 from services.autopilot.parameter_state import ToldParams
 from services.autopilot.safe_state import standing
 from uvf.control.drive_limits import DriveLimits, VelocityRamp, within_limits
-from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
+from uvf.maths.kinematics import Twist, WheelSpeeds
 from uvf.models.vehicle.file import GroundBody
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import mode_name, seconds, stamp, yaw_of
@@ -81,7 +81,7 @@ class GroundAutopilot(Service):
         self._body = body
         self._made_with = (body, home, system_id, imu_rpy, sweeping)
         self._system_id = system_id
-        self._drive = DifferentialDrive(body.wheel_radius, body.track)
+        self._drive = body.drive.kinematics
         self._ramp = VelocityRamp(
             DriveLimits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration)
         )
@@ -154,7 +154,7 @@ class GroundAutopilot(Service):
     def _watch(self, t: float, sensed: GroundSensorInputs) -> None:
         """What the failsafes order, whatever the mode."""
         rims = self._drive.wheels(Twist(self._ramp.linear, self._ramp.angular))
-        asked = WheelSpeeds(rims.left * self._body.wheel_radius, rims.right * self._body.wheel_radius)
+        asked = WheelSpeeds(rims.left * self._drive.wheel_radius, rims.right * self._drive.wheel_radius)
         doing = GroundActivity(self._mode, self._armed and not self._stop, bool(self._choice.source), asked)
         self._safety.keep_near(self._engine.home, self.params.max_distance)
         events, order = self._safety.step(t, sensed, doing, self.params, 1.0 / self.hz)

@@ -24,7 +24,7 @@ class Readings:
 
     def __init__(self, body: GroundBody, imu: Mount | None) -> None:
         mount = imu or Mount()
-        self._radius, self._fastest = body.wheel_radius, body.max_linear
+        self._radius, self._fastest = body.drive.wheel_radius, body.max_linear
         self._body_from_imu: Floats = matrix(from_euler(*mount.rpy))
         self._arm = mount.xyz
         self._waiting: list[Imu] = []

@@ -70,7 +70,7 @@ class OdometryService(Service):
         if file.ground is None:
             raise ValueError(f"{vehicle} is not a ground vehicle")
         self.params = params
-        self._vehicle, self._track = vehicle, file.ground.track
+        self._vehicle, self._track = vehicle, file.ground.drive.kinematics.track
         self._readings = Readings(file.ground, file.sensors.imu.mount if file.sensors.imu else None)
         self._filter = DriveFilter(params.filter, params.noise(0.0), self._track)
         self._map = MapPose(world_from_map)

@@ -2,6 +2,8 @@
 
 RENAMED = {
     "comfort": "inflation_radius",
+    "left_joint": "drive: left",
+    "right_joint": "drive: right",
     "dislike": "cost_scaling_factor",
     "least_frontier": "min_frontier_size",
     "frontier_worth": "frontier_gain",

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from services.sim_ground.world import BodyPlacement, BulletWorld
-from uvf.maths.kinematics import DifferentialDrive, Twist
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import to_euler
 from uvf.models.urdf.model import engine_urdf
 from uvf.models.vehicle.file import load_vehicle
@@ -24,7 +24,7 @@ class Driven(NamedTuple):
 def drive(folder, twist, duration):
     """From a stand, at the accelerations the file allows, and to a stand again."""
     ground = load_vehicle(folder.parent, folder.name).ground
-    kinematics = DifferentialDrive(ground.wheel_radius, ground.track)
+    kinematics = ground.drive.kinematics
     world = BulletWorld([], {"it": BodyPlacement(ground, engine_urdf(folder / ground.urdf), (0.0, 0.0, 0.0))})
     most = np.array((ground.max_linear_acceleration, ground.max_angular_acceleration)) * STEP
     command, expected, turned, last, tilt = np.zeros(2), np.zeros(3), 0.0, 0.0, 0.0

@@ -1,5 +1,6 @@
 """Robots of others become folders without faults that drive; what was dropped or guessed is told."""
 
+import re
 import shutil
 
 import numpy as np
@@ -29,7 +30,10 @@ TOLD = {
         "inertia that no such body has, replaced by that of its box: base_link",
     ],
     "gazebo_sdf": ["caster_wheel (ball)", "plugins dropped: libsomething.so", "radar on chassis", "rates above 100 Hz lowered"],
-    "skid_steer": ["skid steer is not modelled", "rear_left_joint, rear_right_joint"],
+    "skid_steer": [
+        "front_left_joint, rear_left_joint (left) and front_right_joint, rear_right_joint (right)",
+        "skid steer: it turns as two wheels do",
+    ],
     "kobuki": [
         "castors before and behind the axle lifted by 0.5 mm",
         "wheel_left (left) and wheel_right (right) drive; wheel radius 0.035 m",
@@ -77,6 +81,34 @@ def import_one(tmp_path, name, edit=None, arguments=None):
         assert edit[0] in source.read_text()
         source.write_text(source.read_text().replace(*edit))
     return import_vehicle(source, tmp_path / "vehicles" / "it", XacroValues(arguments or {}))
+
+
+BEHIND = "<inertial><pose>-0.06 0.02 0 0 0 0</pose><mass>10<"
+
+
+def test_skid_steer_turns_about_base_link_wherever_its_mass_is(tmp_path):
+    """As the wheels bear it, not about the middle of the wheels."""
+    notes = import_one(tmp_path, "skid_steer", ("<inertial><mass>10<", BEHIND))
+    folder = tmp_path / "vehicles" / "it"
+    drive_file = load_vehicle(folder.parent, "it").ground.drive
+    assert drive_file.kind == "skid_steer"
+    assert drive_file.left == ["wheel_left_1_joint", "wheel_left_2_joint"]
+    assert drive_file.track < drive_file.effective_track < 0.4 + 0.32**2 / 0.4  # shorter than under equal loads
+    assert any("m apart, about (-0.0" in line for line in notes), notes
+    assert inspect(folder).faults == []
+    driven = drive(folder, (0.0, 0.6), np.pi / 0.6)
+    assert np.hypot(*driven.pose[:2]) < 0.01
+    assert driven.pose[2] == pytest.approx(np.pi, rel=0.02)
+    driven = drive(folder, (0.3, 0.3), 4.0)
+    assert driven.pose == pytest.approx(driven.expected, abs=0.06)  # what pulls it inwards on the arc shifts the slip a little
+
+
+def test_a_wrong_effective_track_is_a_fault_that_names_the_right_one(tmp_path):
+    import_one(tmp_path, "skid_steer")
+    path = tmp_path / "vehicles" / "it" / "vehicle.yaml"
+    path.write_text(re.sub("effective_track: .*", "effective_track: 0.5", path.read_text()))
+    (fault,) = inspect(path.parent).faults
+    assert "ground: drive: effective_track: 0.5 m, but with these masses and wheels it is 0.65" in fault
 
 
 def test_sensors_are_taken_over_with_their_figures_and_poses(tmp_path):
@@ -205,7 +237,8 @@ def test_a_joint_may_be_placed_by_its_parent_and_the_link_by_the_joint(tmp_path)
     source.write_text(plain)
     import_vehicle(source, tmp_path / "vehicles" / "converted")
     one, other = (load_vehicle(tmp_path / "vehicles", name).ground for name in ("plain", "converted"))
-    assert (other.track, other.wheel_radius, other.radius) == pytest.approx((one.track, one.wheel_radius, one.radius), abs=1e-4)
+    assert (other.drive.track, other.drive.wheel_radius) == pytest.approx((one.drive.track, one.drive.wheel_radius), abs=1e-4)
+    assert other.radius == pytest.approx(one.radius, abs=1e-4)
 
 
 def test_arguments_of_the_xacro_reach_it(tmp_path):
@@ -301,4 +334,4 @@ def test_limits_that_the_makers_state_are_taken_over(tmp_path, files, limits, to
     ground = load_vehicle(tmp_path / "vehicles", "it").ground
     assert (ground.max_linear, ground.max_angular, ground.max_linear_acceleration) == limits
     assert any(told in line for line in notes)
-    assert ground.motor.no_load_speed * ground.wheel_radius > 2 * ground.max_linear
+    assert ground.motor.no_load_speed * ground.drive.wheel_radius > 2 * ground.max_linear

@@ -68,22 +68,22 @@ BROKEN = {
         '<cylinder radius="0.07" length="0.180"/>',
         ["link 'base_link' reaches 10 mm below the floor"],
     ),
-    "left and right mixed up": ("swap", "", "", ["vehicle.yaml:6: ground: left_joint: left and right are mixed up"]),
+    "left and right mixed up": ("swap", "", "", ["vehicle.yaml:7: ground: drive: left: left and right are mixed up"]),
     "a wrong wheel radius": (
         YAML,
-        "ground.wheel_radius",
+        "ground.drive.wheel_radius",
         0.04,
-        ["ground: wheel_radius: 0.04 m, but the left wheel", "but the right wheel"],
+        ["ground: drive: wheel_radius: 0.04 m, but the left wheel", "but the right wheel"],
     ),
-    "a wrong track": (YAML, "ground.track", 0.2, ["ground: track: 0.2 m, but the wheels of the URDF are 0.16 m apart"]),
+    "a wrong track": (YAML, "ground.drive.track", 0.2, ["ground: drive: track: 0.2 m, but the wheels of the URDF are 0.16 m apart"]),
     "too small a radius": (YAML, "ground.radius", 0.08, ["ground: radius: 0.08 m, but the body reaches 0.113 m"]),
     "an unknown key": (
         YAML,
-        "ground.wheel_radios",
+        "ground.drive.wheel_radios",
         0.033,
-        ["ground: wheel_radios: unknown key 'wheel_radios'; did you mean 'wheel_radius'?"],
+        ["ground: drive: wheel_radios: unknown key 'wheel_radios'; did you mean 'wheel_radius'?"],
     ),
-    "an unknown joint": (YAML, "ground.left_joint", "wheel_left", ["no joint 'wheel_left' (named in vehicle.yaml)"]),
+    "an unknown joint": (YAML, "ground.drive.left", "wheel_left", ["no joint 'wheel_left' (named in vehicle.yaml)"]),
     "a missing URDF": (YAML, "ground.urdf", "burgr.urdf", ["burgr.urdf: no such file; did you mean 'burger.urdf'?"]),
     "a lidar below the floor": (
         YAML,
@@ -147,8 +147,8 @@ def spoil(folder, file, what, new):
     elif file == YAML:
         edit_yaml(folder, what, new)
     else:
-        edit_yaml(folder, "ground.left_joint", "wheel_right_joint")
-        edit_yaml(folder, "ground.right_joint", "wheel_left_joint")
+        edit_yaml(folder, "ground.drive.left", "wheel_right_joint")
+        edit_yaml(folder, "ground.drive.right", "wheel_left_joint")
 
 
 @pytest.mark.parametrize("case", BROKEN)

@@ -12,7 +12,7 @@ from launch.commands import run
 from launch.vehicles import mission_faults
 from uvf.models.scenario import ROOT, load_scenario
 
-FAULTY = {"wheel_radius": 0.33, "radius": 0.08}
+RADIUS, WHEEL_RADIUS = 0.08, 0.33
 LINE = "warning: burger: 3 faults; see 'uvf vehicle check burger'"
 
 
@@ -31,7 +31,7 @@ def root(tmp_path):
 def faulty(root):
     path = root / "vehicles" / "burger" / "vehicle.yaml"
     data = yaml.safe_load(path.read_text())
-    data["ground"] |= FAULTY
+    data["ground"]["radius"], data["ground"]["drive"]["wheel_radius"] = RADIUS, WHEEL_RADIUS
     path.write_text(yaml.safe_dump(data))
     return root
 
@@ -54,7 +54,7 @@ def test_the_check_of_a_mission_tells_each_fault_with_its_place(faulty, monkeypa
     monkeypatch.setattr("launch.checks.load_scenario", lambda path: load_scenario(path, faulty))
     lines = check_mission(str(faulty / "missions" / "two.yaml"))
     assert len(lines) == 3 and all(f"{faulty}/vehicles/burger/vehicle.yaml:" in line for line in lines)
-    assert "ground: wheel_radius: 0.33 m, but the left wheel" in lines[0]
+    assert "ground: drive: wheel_radius: 0.33 m, but the left wheel" in lines[0]
 
 
 def test_a_run_says_so_before_it_begins(faulty, monkeypatch, capsys):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from services.sim_ground.world import BodyPlacement, BulletWorld
-from uvf.maths.kinematics import DifferentialDrive, Twist
+from uvf.maths.kinematics import Twist
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.world.file import load_world
@@ -23,7 +23,7 @@ RAMPS = {
 def driven(name, start, seconds):
     """Where the burger is after driving straight on at 0.2 m/s."""
     world = BulletWorld(solids(load_world(ROOT / "worlds", name)), {"burger": BodyPlacement(BODY, FOLDER / BODY.urdf, start)})
-    world.advance({"burger": DifferentialDrive(BODY.wheel_radius, BODY.track).wheels(Twist(0.2, 0.0))}, seconds)
+    world.advance({"burger": BODY.drive.kinematics.wheels(Twist(0.2, 0.0))}, seconds)
     position = world.state("burger").position
     world.close()
     return position

@@ -28,7 +28,7 @@ def test_a_variant_says_only_what_is_different(vehicles):
     write(vehicles, "slower", variant_of="slow", ground={"max_angular": 0.2})
     base, variant = load_vehicle(vehicles, "burger"), load_vehicle(vehicles, "slower")
     assert (variant.ground.max_linear, variant.ground.max_angular) == (0.1, 0.2)
-    assert variant.ground.track == base.ground.track
+    assert variant.ground.drive == base.ground.drive
     assert (variant.sensors.lidar.noise, variant.sensors.lidar.beams) == (0.5, base.sensors.lidar.beams)
     assert variant.sensors.imu == base.sensors.imu
     assert (vehicles / "slower" / variant.ground.urdf).resolve() == vehicles / "burger" / "burger.urdf"

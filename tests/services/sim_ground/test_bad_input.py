@@ -55,7 +55,7 @@ def test_a_missing_urdf(root):
 
 
 def test_an_unknown_wheel_joint(root):
-    edit_vehicle(root, lambda data: data["ground"].update(left_joint="wheel_left"))
+    edit_vehicle(root, lambda data: data["ground"]["drive"].update(left="wheel_left"))
     assert "no joint 'wheel_left' (named in vehicle.yaml); did you mean 'wheel_left_joint'?" in refusal(root)
 
 

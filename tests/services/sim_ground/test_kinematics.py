@@ -7,7 +7,7 @@ import pytest
 from benchmarks.sim.ground.kinematics import drive, drives, figures, ground_vehicles
 from services.sim_ground.world import BodyPlacement, BulletWorld
 from uvf.control.drive_limits import DriveLimits, VelocityRamp
-from uvf.maths.kinematics import DifferentialDrive, Twist
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import matrix
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import Motor, load_vehicle
@@ -32,7 +32,7 @@ def lowest_up(shaped):
     body = load_vehicle(ROOT / "vehicles", "burger").ground
     strong = msgspec.structs.replace(body, motor=Motor(stall_torque=0.5, no_load_speed=30.0, lag=0.02))
     placed = BodyPlacement(strong, ROOT / "vehicles" / "burger" / body.urdf, (0.0, 0.0, 0.0))
-    world, wheels = BulletWorld([], {"burger": placed}), DifferentialDrive(body.wheel_radius, body.track)
+    world, wheels = BulletWorld([], {"burger": placed}), body.drive.kinematics
     ramp = VelocityRamp(DriveLimits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration))
     up = 1.0
     for n in range(400):

@@ -35,7 +35,7 @@ def test_agrees_with_the_engines_rays_in_the_house():
     for place in places:
         start = np.column_stack((np.tile(place, (len(angles), 1)), np.full(len(angles), 0.182)))
         end = start + 15.0 * np.column_stack((np.cos(angles), np.sin(angles), np.zeros(len(angles))))
-        hits = pybullet.rayTestBatch(start.tolist(), end.tolist(), physicsClientId=engine._client)
+        hits = pybullet.rayTestBatch(start.tolist(), end.tolist(), physicsClientId=engine.engine.client)
         theirs = np.array([15.0 * hit[2] for hit in hits])
         errors.extend(np.abs(model.scan(body_at(*place), []) - theirs))
     engine.close()

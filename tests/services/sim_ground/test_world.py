@@ -9,7 +9,7 @@ import pybullet
 import pytest
 
 from services.sim_ground.world import BodyPlacement, BulletWorld
-from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
+from uvf.maths.kinematics import Twist, WheelSpeeds
 from uvf.maths.rotations import from_euler, matrix, multiply, rotate, to_euler
 from uvf.models.scenario import ROOT
 from uvf.models.shapes.solid import Keyframes, Solid
@@ -23,7 +23,7 @@ HOUSE = load_world(ROOT / "worlds", "house")
 SOLIDS = solids(HOUSE)
 BODY = load_vehicle(ROOT / "vehicles", "burger").ground
 BURGER = BodyPlacement(BODY, ROOT / "vehicles" / "burger" / BODY.urdf, (6.0, 4.4, 0.7))
-DRIVE = DifferentialDrive(BODY.wheel_radius, BODY.track)
+DRIVE = BODY.drive.kinematics
 
 
 @pytest.fixture
@@ -66,7 +66,9 @@ def test_two_worlds_do_not_share_anything(world):
 
 def test_one_that_has_fallen_over_touches_the_floor(world):
     loaded = world._vehicles["burger"]
-    pybullet.resetBasePositionAndOrientation(loaded.index, [6.0, 4.4, 0.12], [0.7071, 0.0, 0.0, 0.7071], physicsClientId=world._client)
+    pybullet.resetBasePositionAndOrientation(
+        loaded.index, [6.0, 4.4, 0.12], [0.7071, 0.0, 0.0, 0.7071], physicsClientId=world.engine.client
+    )
     world.advance({}, 1.0)
     assert {touch.other for touch in world.touches("burger")} == {"floor"}
 
@@ -101,8 +103,8 @@ def test_it_gathers_speed_as_its_motors_torque_falls(world):
     """Flat out, m v' = 2 T (1 - v / (r w0)) / r: an exponential towards the no-load speed."""
     motor, seconds_ = BODY.motor, 0.5
     world.advance({"burger": WheelSpeeds(1e6, 1e6)}, seconds_)
-    top, force = motor.no_load_speed * BODY.wheel_radius, 2 * motor.stall_torque / BODY.wheel_radius
-    mass = 0.824 + 0.114 + 0.005 + 2 * (0.0285 + 0.00001552 / BODY.wheel_radius**2)  # the wheels turn too
+    top, force = motor.no_load_speed * BODY.drive.wheel_radius, 2 * motor.stall_torque / BODY.drive.wheel_radius
+    mass = 0.824 + 0.114 + 0.005 + 2 * (0.0285 + 0.00001552 / BODY.drive.wheel_radius**2)  # the wheels turn too
     wanted = top * (1 - np.exp(-force * (seconds_ - motor.lag / 2) / (mass * top)))
     assert np.linalg.norm(world.state("burger").velocity) == pytest.approx(wanted, rel=0.05)
 
@@ -131,7 +133,7 @@ def slipped(friction, yaw, urdf=BURGER.urdf):
     base = multiply(tilt, from_euler(0.0, 0.0, yaw))
     place = ramp.position + rotate(tilt, np.array((0.0, 0.0, 0.1))) + rotate(base, loaded.com_in_base[0])
     x, y, z, w = *base[1:], base[0]
-    pybullet.resetBasePositionAndOrientation(loaded.index, place.tolist(), [x, y, z, w], physicsClientId=world._client)
+    pybullet.resetBasePositionAndOrientation(loaded.index, place.tolist(), [x, y, z, w], physicsClientId=world.engine.client)
     world.advance({}, 0.3)
     before = world.state("burger").position
     world.advance({}, 1.0)
@@ -174,7 +176,7 @@ def test_a_flat_body_whose_inertia_was_rounded_keeps_it(tmp_path, rounded):
     urdf = tmp_path / "flat.urdf"
     urdf.write_text(flat)
     world = BulletWorld([], {"burger": replace(BURGER, urdf=engine_urdf(urdf))})
-    moments = pybullet.getDynamicsInfo(world._vehicles["burger"].index, -1, physicsClientId=world._client)[2]
+    moments = pybullet.getDynamicsInfo(world._vehicles["burger"].index, -1, physicsClientId=world.engine.client)[2]
     world.close()
     assert moments == pytest.approx((0.001, 0.001, 0.002), rel=1e-3)
 

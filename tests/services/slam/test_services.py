@@ -33,7 +33,7 @@ BASE_FROM_LIDAR = (-0.03, 0.0, 0.0)
 def drive(service, steps, turn_rate=0.0, ticks=4, correction=None):
     """On by ``ticks`` per wheel and step, turning as the gyroscope says; the last outputs."""
     body = BURGER.ground
-    aside = turn_rate * body.track / 2 * 0.02 / body.wheel_radius / RADIANS_PER_TICK
+    aside = turn_rate * body.drive.track / 2 * 0.02 / body.drive.wheel_radius / RADIANS_PER_TICK
     for k in range(1, steps + 1):
         t = 0.02 * k
         left, right = round((ticks - aside) * k), round((ticks + aside) * k)
@@ -48,7 +48,7 @@ def odometry_service():
 
 
 def speed_of(ticks):
-    return ticks * RADIANS_PER_TICK * BURGER.ground.wheel_radius / 0.02
+    return ticks * RADIANS_PER_TICK * BURGER.ground.drive.wheel_radius / 0.02
 
 
 def test_odometry_begins_at_zero_and_the_pose_at_the_start():

@@ -101,7 +101,7 @@ def _surfaces(facts: VehicleInfo, asked: SurfaceCommand) -> list[int]:
 def _wheels(facts: VehicleInfo, asked: WheelCommand) -> list[int]:
     if facts.file.ground is None:
         return []
-    fastest = facts.file.ground.max_linear / facts.file.ground.wheel_radius
+    fastest = facts.file.ground.max_linear / facts.file.ground.drive.wheel_radius
     return [_pulse(asked.left / fastest), _pulse(asked.right / fastest)]
 
 

@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from uvf.maths.rotations import rotate
+from uvf.maths.scrubbing import scrubbing, shared_loads
 from uvf.maths.se3 import apply
 from uvf.models.checks.sensor_rules import sensor_faults, sensor_notes
 from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
-from uvf.models.urdf.robot import UrdfModel
+from uvf.models.urdf.robot import Joint, UrdfModel
 from uvf.models.vehicle.file import GroundBody, VehicleFile
 from uvf.models.yaml_data import BadInput, FileLocation
 
@@ -37,10 +38,10 @@ class CheckedBody:
     def __init__(self, model: UrdfModel, ground: GroundBody) -> None:
         self.model, self.ground = model, ground
         self.poses = model.link_poses()
-        joints = {"left": model.joints[ground.left_joint], "right": model.joints[ground.right_joint]}
-        self.joints = {side: j for side, j in joints.items() if j.child in self.poses and j.parent in self.poses}
-        self.wheels = {side: list(model.below(j.child)) for side, j in self.joints.items()}
-        self.turning = {name for links in self.wheels.values() for name in links}
+        sides = {"left": ground.drive.left_joints, "right": ground.drive.right_joints}
+        found = {side: [model.joints[name] for name in names] for side, names in sides.items()}
+        self.wheels = {side: [j for j in joints if j.child in self.poses and j.parent in self.poses] for side, joints in found.items()}
+        self.turning = {name for joints in self.wheels.values() for j in joints for name in model.below(j.child)}
 
     def collisions(self, names: list[str]) -> list[Solid]:
         """The collision shapes of the links of these names, in base_link."""
@@ -63,7 +64,7 @@ def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
     try:
         return [
             *_base_faults(body),
-            *(line for side in body.joints for line in _wheel_faults(body, side, ground)),
+            *(line for side, joints in body.wheels.items() for joint in joints for line in _wheel_faults(body, side, joint, ground)),
             *_axle_faults(body, ground),
             *_outline_faults(body, ground),
             *_balance_faults(body),
@@ -101,15 +102,15 @@ def _base_faults(body: CheckedBody) -> Iterator[str]:
             yield f"{_at(body.model, line)}: link '{solid.name}' reaches {-low * 1000:.0f} mm below the floor; lift its collision"
 
 
-def _wheel_faults(body: CheckedBody, side: str, ground: FileLocation) -> Iterator[str]:
-    joint = body.joints[side]
+def _wheel_faults(body: CheckedBody, side: str, joint: Joint, ground: FileLocation) -> Iterator[str]:
+    drive = body.ground.drive
     where, what = _at(body.model, joint.line), f"{side} wheel '{joint.name}'"
-    solids = body.collisions(body.wheels[side])
+    solids = body.collisions(list(body.model.below(joint.child)))
     if not solids:
         yield f"{_at(body.model, body.model.links[joint.child].line)}: {what} has no <collision>: it touches nothing; give it one"
         return
     low = -max(float(reach(solid, DOWN)[0]) for solid in solids)
-    if abs(low) > max(TOUCH, 0.02 * body.ground.wheel_radius):
+    if abs(low) > max(TOUCH, 0.02 * drive.wheel_radius):
         yield f"{where}: {what} does not touch the floor: its lowest point is at z = {low * 1000:.1f} mm; move its joint"
     pose = body.poses[joint.child]
     axis = rotate(pose.rotation, joint.axis)
@@ -119,31 +120,47 @@ def _wheel_faults(body: CheckedBody, side: str, ground: FileLocation) -> Iterato
         yield f'{where}: {what} would turn backwards: its axis points to the right; turn the sign of <axis xyz="...">'
     forward = np.array(((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)))
     radius = max(float(reach(solid, forward).sum()) for solid in solids) / 2
-    if abs(radius - body.ground.wheel_radius) > SAME * body.ground.wheel_radius:
-        yield f"{ground.at('wheel_radius')}: {body.ground.wheel_radius:g} m, but the {what} of the URDF has a radius of {radius:.4g} m"
+    if abs(radius - drive.wheel_radius) > SAME * drive.wheel_radius:
+        yield f"{ground.at('drive', 'wheel_radius')}: {drive.wheel_radius:g} m, but the {what} of the URDF has a radius of {radius:.4g} m"
 
 
 def _axle_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:
-    if len(body.joints) < 2:
+    """Wheels on the other side, a wrong track, a base_link that does not lie under the middle of all wheels."""
+    centres = {side: [body.poses[joint.child].translation for joint in joints] for side, joints in body.wheels.items()}
+    if not all(centres.values()):
         return
-    centres = {side: body.poses[joint.child].translation for side, joint in body.joints.items()}
-    left, right = centres["left"], centres["right"]
+    left, right = (np.mean(centres[side], axis=0) for side in ("left", "right"))
     if left[1] <= 0 <= right[1]:
-        yield f"{ground.at('left_joint')}: left and right are mixed up: the left one is at y = {left[1]:.3f} m; exchange them"
+        yield f"{ground.at('drive', 'left')}: left and right are mixed up: the left one is at y = {left[1]:.3f} m; exchange them"
         return
-    for side, wrong in (("left", left[1] <= 0), ("right", right[1] >= 0)):
-        if wrong:
-            y = centres[side][1]
-            yield f"{ground.at(f'{side}_joint')}: the {side} wheel is at y = {y:.3f} m in base_link; left is above zero, right below"
-    track = float(left[1] - right[1])
-    if abs(abs(track) - body.ground.track) > SAME * body.ground.track:
-        yield f"{ground.at('track')}: {body.ground.track:g} m, but the wheels of the URDF are {abs(track):.4g} m apart"
-    middle = (left + right) / 2
-    if np.hypot(middle[0], middle[1]) > OFF_CENTRE:
-        yield (
-            f"{_at(body.model, body.joints['left'].line)}: the middle of the axle is at x = {middle[0]:.3f}, y = {middle[1]:.3f} m; "
-            "base_link must lie under it"
-        )
+    wrong = [(side, c[1]) for side, sign in (("left", 1), ("right", -1)) for c in centres[side] if sign * c[1] <= 0]
+    for side, y in wrong:
+        yield f"{ground.at('drive', side)}: the {side} wheel is at y = {y:.3f} m in base_link; left is above zero, right below"
+    drive, track = body.ground.drive, float(left[1] - right[1])
+    if abs(abs(track) - drive.track) > SAME * drive.track:
+        yield f"{ground.at('drive', 'track')}: {drive.track:g} m, but the wheels of the URDF are {abs(track):.4g} m apart"
+    if drive.effective_track is None:
+        yield from _off_centre(body, (left + right) / 2, "the middle of the axle is")
+    else:
+        yield from _scrubbing_faults(body, np.array(centres["left"] + centres["right"]), ground)
+
+
+def _off_centre(body: CheckedBody, place: Floats, what: str) -> Iterator[str]:
+    if np.hypot(place[0], place[1]) > OFF_CENTRE:
+        line = body.wheels["left"][0].line
+        yield f"{_at(body.model, line)}: {what} at x = {place[0]:.3f}, y = {place[1]:.3f} m; base_link must lie under it"
+
+
+def _scrubbing_faults(body: CheckedBody, centres: Floats, ground: FileLocation) -> Iterator[str]:
+    """How wheels that scrub make the vehicle turn, by where they stand and what they carry."""
+    com = _centre_of_mass(body)
+    if com is None:
+        return
+    found = scrubbing(centres[:, :2], shared_loads(centres[:, :2], com[:2]))
+    yield from _off_centre(body, np.array(found.pivot), "with these masses and wheels it turns about a point")
+    told = body.ground.drive.effective_track
+    if told is not None and abs(told - found.track) > SAME * found.track:
+        yield f"{ground.at('drive', 'effective_track')}: {told:g} m, but with these masses and wheels it is {found.track:.4g} m"
 
 
 def _outline_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:
@@ -173,7 +190,7 @@ def _balance_faults(body: CheckedBody) -> Iterator[str]:
 def _margin_notes(body: CheckedBody) -> Iterator[str]:
     supports, com = _supports(body), _centre_of_mass(body)
     margin = _margin(supports, com[:2]) if supports and com is not None else None
-    if margin is not None and 0 <= margin < LOW_MARGIN * body.ground.track:
+    if margin is not None and 0 <= margin < LOW_MARGIN * body.ground.drive.track:
         yield f"the centre of mass is only {margin * 1000:.0f} mm inside of the supports: it may tip when it accelerates"
 
 
@@ -186,7 +203,7 @@ def _castor_notes(body: CheckedBody) -> Iterator[str]:
 
 def _supports(body: CheckedBody) -> list[Floats]:
     """(2,) m: the wheels, wherever they are, and what else touches the floor; of a shape's underside its corners."""
-    points: list[Floats] = [body.poses[joint.child].translation[:2] for joint in body.joints.values()]
+    points: list[Floats] = [body.poses[joint.child].translation[:2] for joints in body.wheels.values() for joint in joints]
     for solid in body.collisions(body.rest):
         low = -float(reach(solid, DOWN)[0])
         if low <= TOUCH:

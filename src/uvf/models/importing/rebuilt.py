@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se3 import IDENTITY, Transform, apply, compose, inverse
-from uvf.models.importing.drive_pair import DrivePair, WheelGuess, shapes_below
+from uvf.models.importing.drive_wheels import CASTORS, DriveWheels, swivels
 from uvf.models.importing.inertia_guess import mended
 from uvf.models.importing.robot import Foreign
+from uvf.models.importing.wheel_guess import WheelGuess, shapes_below
 from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.inertia import joined, moved
@@ -20,8 +21,7 @@ Floats = NDArray[np.float64]
 BASE = "base_link"
 DOWN = np.array(((0.0, 0.0, -1.0),))
 Y = np.array((0.0, 1.0, 0.0))
-CASTORS = ("cast", "swivel", "ball", "skid", "support")
-SKID = "skid steer is not modelled: one pair drives, the other wheels became balls that slide"
+SLIDE = "wheels that neither drive nor swivel became balls that slide"
 LOW = 0.004  # m above the floor, within which a shape is meant to touch it
 LIFT = 0.0005  # m
 NEAR_FLOOR = 0.35  # of the wheel's radius: what a castor's link may be off the floor
@@ -32,19 +32,19 @@ class _Parts:
     """The model in base_link: base_from_link of every link, and what became of them."""
 
     model: UrdfModel
-    pair: DrivePair
+    wheels: DriveWheels
     poses: dict[str, Transform]
     links: dict[str, Link]
     joints: dict[str, Joint]
 
 
-def rebuilt(foreign: Foreign, pair: DrivePair) -> UrdfModel:
+def rebuilt(foreign: Foreign, wheels: DriveWheels) -> UrdfModel:
     """The vehicle's model rebuilt to UVF's conventions; notes of what was changed go to ``foreign``."""
     model = foreign.model
-    poses = {name: compose(pair.base_from_root, pose) for name, pose in model.link_poses().items()}
-    parts = _Parts(model, pair, poses, {}, {})
-    wheels = {w.joint.name: [n for n in model.below(w.joint.child) if n in poses] for w in (pair.left, pair.right)}
-    turning = {name for names in wheels.values() for name in names}
+    poses = {name: compose(wheels.base_from_root, pose) for name, pose in model.link_poses().items()}
+    parts = _Parts(model, wheels, poses, {}, {})
+    below = {w.joint.name: [n for n in model.below(w.joint.child) if n in poses] for w in wheels.driven}
+    turning = {name for names in below.values() for name in names}
     rest = [name for name in poses if name not in turning]
     castors = _castors(parts, rest, foreign)
     trunk = _trunk(parts, rest)
@@ -52,8 +52,9 @@ def rebuilt(foreign: Foreign, pair: DrivePair) -> UrdfModel:
     for name in rest:
         if name not in trunk:
             _add_fixed(parts, name, castors, foreign)
-    for side, wheel in (("left", pair.left), ("right", pair.right)):
-        _add_wheel(parts, side, wheel, wheels[wheel.joint.name])
+    for side, several in (("left", wheels.left), ("right", wheels.right)):
+        for name, wheel in zip(wheel_names(side, len(several)), several, strict=True):
+            _add_wheel(parts, name, wheel, below[wheel.joint.name])
     foreign.notes.add("wheels touch as balls of their radius: one contact at the middle of the tread")
     held = [j.name for j in model.joints.values() if j.kind != "fixed" and j.child in rest and j.child not in castors]
     if held:
@@ -89,7 +90,7 @@ def _trunk(parts: _Parts, rest: list[str]) -> list[str]:
     """The links that become base_link: the root, an own base_link, and, where these weigh nothing, what carries the wheels."""
     trunk = [parts.model.roots[0], *([BASE] if BASE in rest else [])]
     if all(parts.model.links[n].inertial is None for n in trunk):
-        trunk.append(parts.pair.left.joint.parent)
+        trunk.append(parts.wheels.left[0].joint.parent)
     return [n for n in dict.fromkeys(trunk) if n in rest]
 
 
@@ -129,25 +130,30 @@ def _named(name: str, parts: _Parts) -> str:
     return clean if clean not in (*parts.links, *RESERVED) else f"{clean}_{len(parts.links)}"
 
 
-def _add_wheel(parts: _Parts, side: str, wheel: WheelGuess, names: list[str]) -> None:
+def wheel_names(side: str, count: int) -> list[str]:
+    """What the wheels of a side are called, from the front: their joints end in _joint, their links in _link."""
+    return [f"wheel_{side}"] if count == 1 else [f"wheel_{side}_{i}" for i in range(1, count + 1)]
+
+
+def _add_wheel(parts: _Parts, called: str, wheel: WheelGuess, names: list[str]) -> None:
     """A link at the middle of the tread, its axes those of base_link, on a joint about y."""
-    centre = apply(parts.pair.base_from_root, wheel.centre[None])[0]
+    centre = apply(parts.wheels.base_from_root, wheel.centre[None])[0]
     wheel_from_base = Transform(IDENTITY.rotation, -centre)
     links = [parts.model.links[n] for n in names]
     frames = {n: compose(wheel_from_base, parts.poses[n]) for n in names}
     masses = [moved(link.inertial, frames[link.name]) for link in links if link.inertial is not None]
     looks = [placed(s, frames[k.name]) for k in links for s in (k.visuals or k.collisions)]
-    name = f"wheel_{side}_link"
+    name = f"{called}_link"
     ball = Solid(name, "sphere", (wheel.radius,), np.zeros(3))
     parts.links[name] = Link(name, joined(masses), tuple(replace(s, name=name) for s in looks), (ball,))
-    joint = f"wheel_{side}_joint"
+    joint = f"{called}_joint"
     parts.joints[joint] = Joint(joint, "continuous", BASE, name, Transform(IDENTITY.rotation, centre), Y)
 
 
 def _castors(parts: _Parts, rest: list[str], foreign: Foreign) -> dict[str, Solid]:
     """Link -> the ball with which it touches the floor: castors by name or because they turn, and wheels that do not drive."""
     found: dict[str, Solid] = {}
-    others = {w.joint.child for w in parts.pair.others}
+    others = {w.joint.child for w in parts.wheels.others}
     for name in rest:
         link, joint = parts.model.links[name], parts.model.parents.get(name)
         called = any(word in name.lower() for word in CASTORS) or (joint is not None and any(w in joint.name.lower() for w in CASTORS))
@@ -156,21 +162,14 @@ def _castors(parts: _Parts, rest: list[str], foreign: Foreign) -> dict[str, Soli
             ball = _ball(link, parts, name in others or called)
             if ball is not None:
                 found[name] = ball
-    extra = [w.joint.name for w in parts.pair.others if w.joint.child in found and not _swivels(parts.model, w.joint)]
+    extra = [w.joint.name for w in parts.wheels.others if w.joint.child in found and not swivels(parts.model, w.joint)]
     if len(extra) >= 2:
-        foreign.notes.add(SKID, ", ".join(extra))
+        foreign.notes.add(SLIDE, ", ".join(extra))
     skidding = {parts.model.joints[name].child for name in extra} if len(extra) >= 2 else set()
     plain = [n for n in found if n not in skidding]
     if plain:
         foreign.notes.add("castors became balls that slide and touch the floor", ", ".join(plain))
     return found
-
-
-def _swivels(model: UrdfModel, joint: Joint) -> bool:
-    """Whether a wheel hangs in a fork that turns too, or is called a castor."""
-    fork = model.parents.get(joint.parent)
-    called = any(word in f"{joint.name} {joint.child}".lower() for word in CASTORS)
-    return called or (fork is not None and fork.kind != "fixed")
 
 
 def _ball(link: Link, parts: _Parts, sure: bool) -> Solid | None:
@@ -180,9 +179,9 @@ def _ball(link: Link, parts: _Parts, sure: bool) -> Solid | None:
         return None
     lows = [-float(reach(s, DOWN)[0]) for s in solids]
     low, high = min(lows), max(float(reach(s, -DOWN)[0]) for s in solids)
-    if abs(low) > (NEAR_FLOOR * parts.pair.radius if sure else LOW):
+    if abs(low) > (NEAR_FLOOR * parts.wheels.radius if sure else LOW):
         return None
-    radius = float(np.clip((high - low) / 2, 0.003, parts.pair.radius))
+    radius = float(np.clip((high - low) / 2, 0.003, parts.wheels.radius))
     corners = triangles(solids[int(np.argmin(lows))])[0]
     lowest = corners[corners[:, 2] <= corners[:, 2].min() + 1e-3]
     x, y = (lowest.min(axis=0) + lowest.max(axis=0))[:2] / 2

@@ -8,6 +8,7 @@ import msgspec
 from uvf.models.keys import key, plain
 from uvf.models.quantities import Name, NotNegative, PhysicsRate, Positive
 from uvf.models.vehicle.air import AirBody, BatteryPack, check_air, check_battery
+from uvf.models.vehicle.drive import DriveFile, check_drive
 from uvf.models.vehicle.layers import file_of, fill_vehicle, folders_of
 from uvf.models.vehicle.sensors import Sensors, check_sensors, check_sensors_of_aircraft
 from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
@@ -30,13 +31,10 @@ class Friction(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A differential-drive vehicle: URDF joint names, kinematics and limits."""
+    """A ground vehicle: its URDF, its drive and its limits."""
 
     urdf: Annotated[Name, plain("URDF or xacro file in the vehicle's folder.")]
-    left_joint: Annotated[Name, plain("Name of the left wheel's joint in the URDF.")]
-    right_joint: Annotated[Name, plain("Name of the right wheel's joint in the URDF.")]
-    wheel_radius: Annotated[Positive, key("m", "Radius of the driven wheels; within 3 % of the URDF's.")]
-    track: Annotated[Positive, key("m", "Distance between the contact points of the driven wheels; within 3 % of the URDF's.")]
+    drive: Annotated[DriveFile, plain("The driven wheels and how the vehicle turns by them.")]
     radius: Annotated[
         Positive, key("m", "Radius of the circle about base_link that holds the whole body; the planner keeps it from obstacles.")
     ]
@@ -59,7 +57,7 @@ class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     kind: Annotated[Literal["ground", "fixed_wing"], plain("`ground` needs a `ground` section, `fixed_wing` an `air` section.")]
     about: Annotated[str, plain("One sentence for lists.")]
     sensors: Annotated[Sensors, plain("What the vehicle carries. SLAM and planner need a lidar and encoders.")]
-    ground: Annotated[GroundBody | None, plain("Body of a differential-drive vehicle.")] = None
+    ground: Annotated[GroundBody | None, plain("Body of a ground vehicle.")] = None
     air: Annotated[AirBody | None, plain("Body of a JSBSim aircraft.")] = None
     params: Annotated[
         dict[str, dict[str, Any]],
@@ -87,8 +85,8 @@ def load_vehicle(vehicles: str | Path, name: str, named_at: FileLocation | None 
         raise BadInput(f"{place.at('kind')}: kind is '{vehicle.kind}' but there is no '{section}:' section")
     check_sensors(vehicle.sensors, place.at("sensors"))
     ground, air = vehicle.ground, vehicle.air
-    if ground is not None and ground.left_joint == ground.right_joint:
-        raise BadInput(f"{place.at('ground', 'right_joint')}: the left wheel's joint too; name the right one")
+    if ground is not None:
+        check_drive(ground.drive, place.at("ground", "drive"))
     if ground is not None and ground.battery is not None:
         _check_ground_battery(ground.battery, place.at("ground", "battery"))
     if air is not None:

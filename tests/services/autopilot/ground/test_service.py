@@ -26,16 +26,14 @@ from services.autopilot.ground.service import GroundAutopilot
 from tests.runtime.stepping import recall, stepped
 from tests.services.live_params import all_settable_are_read
 from tests.stops import ENGAGED, RELEASED
+from uvf.models.vehicle.drive import DriveFile
 from uvf.models.vehicle.file import GroundBody, Motor
 from uvf.runtime.messages.convert import planar_pose, stamp
 from uvf.runtime.state.stop_all import StopStatus
 
 BODY = GroundBody(
     urdf="x.urdf",
-    left_joint="l",
-    right_joint="r",
-    wheel_radius=0.05,
-    track=0.2,
+    drive=DriveFile(left="l", right="r", wheel_radius=0.05, track=0.2),
     radius=0.15,
     max_linear=0.5,
     max_angular=2.0,
@@ -74,7 +72,7 @@ class Bench:
     @property
     def speed(self):
         wheels = self.said["wheels"]
-        return BODY.wheel_radius * (wheels.left + wheels.right) / 2
+        return BODY.drive.wheel_radius * (wheels.left + wheels.right) / 2
 
 
 def test_the_planner_drives_in_mode_mission():

@@ -67,10 +67,7 @@ _ROVER_FILE = {
     "sensors": {"imu": _IMU},
     "ground": {
         "urdf": "x",
-        "left_joint": "l",
-        "right_joint": "r",
-        "wheel_radius": 0.03,
-        "track": 0.16,
+        "drive": {"left": "l", "right": "r", "wheel_radius": 0.03, "track": 0.16},
         "radius": 0.15,
         "max_linear": 0.5,
         "max_angular": 2.0,

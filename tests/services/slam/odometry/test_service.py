@@ -44,9 +44,9 @@ class Bench:
             force = (twist.linear - self.before.linear) / DT
             self.before = twist
             self.pose = move(self.pose, mean, DT)
-            side = mean.angular * BURGER.ground.track / 2
+            side = mean.angular * BURGER.ground.drive.track / 2
             ways = np.array((mean.linear - side, mean.linear + side)) + spin
-            self.turned += ways * DT / (BURGER.ground.wheel_radius * self.radius)
+            self.turned += ways * DT / (BURGER.ground.drive.wheel_radius * self.radius)
             left, right = (int(n) for n in np.floor(self.turned / TICK))
             stamped = stamp(self.t - DT)
             wheels = WheelTicks(timestamp=stamped, left=left, right=right, radians_per_tick=TICK)
@@ -127,7 +127,7 @@ def test_motion_that_the_scans_do_not_see_is_no_motion():
     service, t, events = OdometryService("v", BURGER, START, OdometryParams()), 0.0, []
     for k in range(500):
         t += DT
-        ticks = round(0.3 * t / BURGER.ground.wheel_radius / TICK)
+        ticks = round(0.3 * t / BURGER.ground.drive.wheel_radius / TICK)
         wheels = WheelTicks(timestamp=stamp(t - DT), left=ticks, right=ticks, radians_per_tick=TICK)
         out = stepped(service, t, wheels=wheels, imu=[], fix=MapFix(timestamp=stamp(t - DT)) if k % 10 == 0 else None)
         events += out.get("events", [])

@@ -105,7 +105,7 @@ def test_wheels_that_spin_against_a_bookcase_are_noticed():
     site = demo(ground=strong)
     heard = run([*simulator(site), *slam(site), wheels_only(lambda t: (9.0, 9.0))], 18.0)
     *_, (_, told, true, _) = beside_truth(heard)
-    rolled = 9.0 * strong.wheel_radius * 17.0
+    rolled = 9.0 * strong.drive.wheel_radius * 17.0
     assert rolled - true.x > 2.0
     assert told.pose.position.x - true.x < 0.25 * (rolled - true.x)
     assert any("wheels slip" in event.text and seconds(event.timestamp) > 9.0 for event in heard["EVENTS"])

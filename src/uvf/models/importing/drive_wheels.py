@@ -1,0 +1,251 @@
+"""Which joints drive a vehicle, which way is up and which is forward: guessed from axes, places and names."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.rotations import from_matrix
+from uvf.maths.scrubbing import Scrubbing, scrubbing, shared_loads
+from uvf.maths.se3 import Transform, apply, inverse
+from uvf.models.importing.robot import Foreign
+from uvf.models.importing.wheel_guess import WheelGuess, may_turn, shapes_below, wheel_on
+from uvf.models.shapes.mesh import reach
+from uvf.models.urdf.robot import Joint, UrdfModel
+from uvf.models.yaml_data import BadInput
+
+Floats = NDArray[np.float64]
+
+PARALLEL = 0.97
+ALIKE = 0.12  # share by which the radii of a pair may differ, and the tracks of pairs that drive together
+CASTORS = ("cast", "swivel", "ball", "skid", "support")
+PASSIVE = re.compile(r"cast[eo]r|swivel|passive|idler|fork|steer|pivot|omni|follow", re.I)
+DRIVEN = re.compile(r"wheel|whl|tire|tyre|ruota|rueda|roue|rad\b|drive|motor|trac", re.I)
+LEFT = re.compile(
+    r"left|izq|sinist|gauche|link?s|(^|[_\-.0-9])l([_\-.0-9]|$)|^l(w|wheel|m)|wheel_?l($|_)|wl($|_)|(?-i:[a-z]L($|[_A-Z]))",
+    re.I,
+)
+RIGHT = re.compile(
+    r"right|der(echa)?_|destr|droit|recht|(^|[_\-.0-9])r([_\-.0-9]|$)|^r(w|wheel|m)|wheel_?r($|_)|wr($|_)|(?-i:[a-z]R($|[_A-Z]))",
+    re.I,
+)
+
+
+Pair = tuple[WheelGuess, WheelGuess]
+
+
+@dataclass(frozen=True)
+class DriveWheels:
+    """The driven wheels, left and right as the vehicle drives, from the front, and the other wheels.
+
+    base_from_root: to the floor under the point about which the vehicle turns, x forward, z up; turning_track: track of the two wheels
+    on the axle through it that turn as all of them do [m].
+    """
+
+    left: tuple[WheelGuess, ...]
+    right: tuple[WheelGuess, ...]
+    others: tuple[WheelGuess, ...]
+    base_from_root: Transform
+    turning_track: float
+
+    @property
+    def driven(self) -> tuple[WheelGuess, ...]:
+        """All of them, the left side first."""
+        return self.left + self.right
+
+    @property
+    def radius(self) -> float:
+        """Mean radius of the driven wheels [m]."""
+        return float(np.mean([wheel.radius for wheel in self.driven]))
+
+    @property
+    def track(self) -> float:
+        """Mean distance between the wheels of a pair [m]."""
+        return _track(self.left, self.right)
+
+
+def _track(left: tuple[WheelGuess, ...], right: tuple[WheelGuess, ...]) -> float:
+    return float(np.mean([np.linalg.norm(a.centre - b.centre) for a, b in zip(left, right, strict=True)]))
+
+
+def find_wheels(foreign: Foreign) -> DriveWheels:
+    """The joints that drive a vehicle. Raises BadInput, with what a person must do, where there are none."""
+    model = foreign.model
+    turning = [joint for joint in model.joints.values() if may_turn(joint, _is_called_wheel(joint))]
+    wheels = [wheel for joint in turning if (wheel := wheel_on(model, joint)) is not None]
+    pairs = [(a, b) for a, b in combinations(wheels, 2) if _opposite(a, b)]
+    if not pairs:
+        found = ", ".join(w.joint.name for w in wheels) or "none"
+        fixed = ", ".join(name for name, joint in model.joints.items() if joint not in turning and "wheel" in name.lower())
+        held = f"; wheels that are fixed: {fixed}" if fixed else ""
+        raise BadInput(
+            f"{model.path}: no two wheels of one size on one axis; joints that turn: {found}{held}. "
+            "UVF drives two wheels on one axle: make their joints continuous, give both a shape, name them ..._left... and ..._right..."
+        )
+    middle = np.mean([p.translation for p in model.link_poses().values()], axis=0)
+    best = max(pairs, key=lambda pair: _score(pair, foreign, middle))
+    return _oriented([best, *_more_pairs(best, pairs, foreign)], wheels, foreign)
+
+
+def _is_called_wheel(joint: Joint) -> bool:
+    return bool(DRIVEN.search(joint.name))
+
+
+def _more_pairs(best: Pair, pairs: list[Pair], foreign: Foreign) -> list[Pair]:
+    """With skid steer: the other pairs of such wheels that cannot be steered, if they are driven, too."""
+    told = {*foreign.drive.left, *foreign.drive.right}
+    found: list[Pair] = []
+    for pair in pairs:
+        taken = {w.joint.name for p in (best, *found) for w in p}
+        called = _called_driven(pair) or not _called_driven(best)
+        drives = all(w.joint.name in told for w in pair) if told else called and not any(PASSIVE.search(n) for n in _names(pair))
+        if drives and not any(w.joint.name in taken or swivels(foreign.model, w.joint) for w in pair) and _alike(best, pair):
+            found.append(pair)
+    return found
+
+
+def _names(pair: Pair) -> list[str]:
+    return [w.joint.name + " " + w.joint.child for w in pair]
+
+
+def _called_driven(pair: Pair) -> bool:
+    return all(DRIVEN.search(name) for name in _names(pair))
+
+
+def _alike(a: Pair, b: Pair) -> bool:
+    """Of one size, on parallel axes, as far apart."""
+    tracks = [float(np.linalg.norm(first.centre - second.centre)) for first, second in (a, b)]
+    return (
+        abs(a[0].radius - b[0].radius) <= ALIKE * a[0].radius
+        and bool(abs(a[0].axis @ b[0].axis) > PARALLEL)
+        and abs(tracks[0] - tracks[1]) <= ALIKE * tracks[0]
+    )
+
+
+def swivels(model: UrdfModel, joint: Joint) -> bool:
+    """Whether a wheel hangs in a fork that turns too, or is called a castor."""
+    fork = model.parents.get(joint.parent)
+    called = any(word in f"{joint.name} {joint.child}".lower() for word in CASTORS)
+    return called or (fork is not None and fork.kind != "fixed")
+
+
+def _opposite(a: WheelGuess, b: WheelGuess) -> bool:
+    """On one axis, of one size, apart."""
+    apart = a.centre - b.centre
+    distance = float(np.linalg.norm(apart))
+    if distance < 0.5 * a.radius or abs(a.radius - b.radius) > ALIKE * a.radius or abs(a.axis @ b.axis) < PARALLEL:
+        return False
+    return bool(abs(apart @ a.axis) / distance > PARALLEL)
+
+
+def _score(pair: Pair, foreign: Foreign, middle: Floats) -> tuple[float, ...]:
+    names = _names(pair)
+    told = {*foreign.drive.left, *foreign.drive.right}
+    score = 10.0 * all(w.joint.name in told for w in pair)
+    score += 2.0 * _called_driven(pair) - 5.0 * any(PASSIVE.search(n) for n in names)
+    score += 2.0 * (any(LEFT.search(n) for n in names) and any(RIGHT.search(n) for n in names))
+    score -= 3.0 * any(w.joint.mimics is not None for w in pair)
+    between = (pair[0].centre + pair[1].centre) / 2
+    return score, round(pair[0].radius, 3), -round(float(np.linalg.norm(between - middle)), 3)
+
+
+def _oriented(pairs: list[Pair], wheels: list[WheelGuess], foreign: Foreign) -> DriveWheels:
+    a, b = pairs[0]
+    lateral = (a.centre - b.centre) / np.linalg.norm(a.centre - b.centre)
+    up = _up(foreign, lateral, a)
+    side = lateral if _left_is_first(pairs[0], foreign, up) else -lateral
+    forward = np.cross(side, up)
+    forward /= np.linalg.norm(forward)
+    pairs = sorted(pairs, key=lambda pair: -float((pair[0].centre + pair[1].centre) @ forward))
+    sides = [sorted(pair, key=lambda wheel: -float(wheel.centre @ side)) for pair in pairs]
+    left, right = (tuple(pair[k] for pair in sides) for k in (0, 1))
+    driven = left + right
+    middle, radius = np.mean([w.centre for w in driven], axis=0), float(np.mean([w.radius for w in driven]))
+    axes = np.column_stack((forward, np.cross(up, forward), up))
+    turning = _turning(driven, (middle, axes), foreign) if len(pairs) > 1 else Scrubbing(_track(left, right), (0.0, 0.0))
+    root_from_base = Transform(from_matrix(axes), middle + axes @ np.array((*turning.pivot, -radius)))
+    if abs(forward[0]) < 0.99 or up[2] < 0.99:
+        foreign.notes.add(f"axes turned: forward was {_row(forward)} and up {_row(up)} in the file's root")
+    return DriveWheels(left, right, tuple(w for w in wheels if w not in driven), inverse(root_from_base), turning.track)
+
+
+def _turning(driven: tuple[WheelGuess, ...], frame: tuple[Floats, Floats], foreign: Foreign) -> Scrubbing:
+    """How a vehicle turns with several wheels a side; frame: its middle (3,) [m] and axes (3, 3), columns forward, left, up."""
+    middle, axes = frame
+    places = np.array([(wheel.centre - middle) @ axes for wheel in driven])[:, :2]
+    com = _centre_of_mass(foreign.model)
+    loads = shared_loads(places, ((com - middle) @ axes)[:2]) if com is not None else np.ones(len(places))
+    found = scrubbing(places, loads)
+    foreign.notes.add(
+        f"skid steer: it turns as two wheels do that are {found.track:.3g} m apart, about ({found.pivot[0]:.3f}, {found.pivot[1]:.3f}) m "
+        "from the middle of the wheels, where base_link is put"
+    )
+    return found
+
+
+def _centre_of_mass(model: UrdfModel) -> Floats | None:
+    """(3,) m in the root's frame; None where the file states no masses."""
+    poses = model.link_poses()
+    weighed = [(link.inertial, poses[name]) for name, link in model.links.items() if link.inertial is not None and name in poses]
+    total = sum(inertial.mass for inertial, _ in weighed)
+    if total <= 0.0:
+        return None
+    com: Floats = np.sum([inertial.mass * apply(pose, inertial.com[None])[0] for inertial, pose in weighed], axis=0) / total
+    return com
+
+
+def _up(foreign: Foreign, lateral: Floats, wheel: WheelGuess) -> Floats:
+    """z unless the axle is upright then; else the direction in which the wheels are lowest."""
+    best = np.array((0.0, 0.0, 1.0))
+    if abs(lateral[2]) >= 0.3:
+        options = [d for d in _six() if abs(d @ lateral) < 0.3]
+        poses = foreign.model.link_poses()
+        everything = [s for name in foreign.model.roots[:1] for s in shapes_below(foreign.model, name, poses)]
+        lows = [max(float(reach(s, -d[None])[0]) for s in everything) + float(wheel.centre @ d) for d in options]
+        best = options[int(np.argmin(lows))]
+    level = best - (best @ lateral) * lateral
+    up: Floats = level / np.linalg.norm(level)
+    return up
+
+
+def _six() -> Iterator[Floats]:
+    for sign in (1.0, -1.0):
+        yield from sign * np.eye(3)[::-1]
+
+
+def _left_is_first(pair: Pair, foreign: Foreign, up: Floats) -> bool:
+    """x forward counts (REP-103); where x is no way to drive, names or the plugin say what is left."""
+    a, b = pair
+    forward = np.cross((a.centre - b.centre) / np.linalg.norm(a.centre - b.centre), up)
+    by_names = _by_names(a, b, foreign)
+    if abs(forward[0]) > 0.7:
+        if by_names is not None and by_names != (forward[0] > 0):
+            foreign.notes.add("left and right exchanged: by their places with x forward the wheels are on the other sides than named")
+        return bool(forward[0] > 0)
+    if by_names is None:
+        foreign.notes.add("guessed which wheel is left: neither x nor the names tell; check the direction of driving")
+        return bool(forward[np.argmax(np.abs(forward))] > 0)
+    return by_names
+
+
+def _by_names(a: WheelGuess, b: WheelGuess, foreign: Foreign) -> bool | None:
+    """Whether the first is called left; None = not told."""
+    for wheel, if_left in ((a, True), (b, False)):
+        if wheel.joint.name in foreign.drive.left:
+            return if_left
+    names = _names((a, b))
+    lefts = [bool(LEFT.search(n)) and not RIGHT.search(n) for n in names]
+    rights = [bool(RIGHT.search(n)) and not LEFT.search(n) for n in names]
+    if (lefts[0] and not lefts[1]) or (rights[1] and not rights[0]):
+        return True
+    if (lefts[1] and not lefts[0]) or (rights[0] and not rights[1]):
+        return False
+    return None
+
+
+def _row(values: NDArray[Any]) -> str:
+    return "(" + ", ".join(f"{round(float(v), 2) + 0.0:g}" for v in values) + ")"
