@@ -70,6 +70,7 @@ class Readings:
         x, y, _ = self._arm
         on_axle = self._body_from_imu @ force + (turning**2 * x + angular * y, turning**2 * y - angular * x, 0.0)
         tilting = self._inclination.step(dt, rate, on_axle, ways)
+        ways, turning = self._inclination.seen_from_above(ways, rate)
         return Step(dt, *ways, turning, float(on_axle[0]), *tilting)
 
     def _until(self, now: float) -> tuple[Floats, Floats]:

@@ -8,6 +8,7 @@ from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.inclination import Inclination
 from uvf.estimation.odometry.states import Noise, Step
 from uvf.maths.geodesy import GRAVITY
+from uvf.maths.rotations import from_euler, matrix
 
 BIAS = np.array((0.08, -0.06, 0.02))  # m/s^2
 
@@ -86,3 +87,15 @@ def test_a_slope_is_found_again_after_the_inertial_unit_was_silent(degrees, sile
     assert inclination.state[:2] == pytest.approx(steps[-1][3][:2], abs=0.15)
     assert doubted * DT < 2.5
     assert one.speeds[0] == pytest.approx(0.3, abs=0.02)
+
+
+@pytest.mark.parametrize(("roll", "pitch"), [(0.0, 0.0), (0.0, -0.25), (0.2, 0.0), (-0.15, 0.2)])
+def test_ways_and_turns_are_told_as_from_above(roll, pitch):
+    """Against the Euler angles' own rates."""
+    inclination = Inclination()
+    upward = matrix(from_euler(roll, pitch, 0.0))[2]
+    inclination.state[:2] = GRAVITY * upward[:2]
+    rate = np.array((0.1, -0.2, 0.5))
+    ways, turning = inclination.seen_from_above((1.0, 2.0), rate)
+    assert ways == pytest.approx((np.cos(pitch), 2.0 * np.cos(pitch)))
+    assert turning == pytest.approx((rate[1] * np.sin(roll) + rate[2] * np.cos(roll)) / np.cos(pitch))

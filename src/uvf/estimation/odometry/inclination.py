@@ -18,6 +18,7 @@ STEEP, BIAS = 2.0, 0.1  # m/s^2, 1 sigma at the start of gravity's parts, and of
 SHAKEN, BIAS_WALK = 0.03, 1e-3  # m/s^2 per square root of s, by which they change beside what the gyroscope says
 FELT = 0.3  # m/s^2, 1 sigma of what is felt beside gravity and bias: skidding, bumps, the speed's changes
 STRUCK, BLOW = 1.5, 0.2  # m/s^2 of difference, from which on it is a blow; s after which it is none, but ground that was not felt before
+STEEPEST = 0.6  # sine of a slope: more is a vehicle that is spun about, or falls
 SETTLING = 1.0  # s at rest in which the gyroscope's mean counts for its bias
 FAST, SLOW, STEADY = 0.1, 0.5, 0.1  # s, of two means of what is felt at rest; m/s^2 by which they differ where it is being tilted
 
@@ -52,6 +53,19 @@ class Inclination:
         self._speed = speed
         self._feel(dt, force[:2] - accelerated)
         return tilting
+
+    def seen_from_above(self, ways: tuple[float, float], rate: Floats) -> tuple[tuple[float, float], float]:
+        """Ways of the wheels [m] and turning [rad/s] as they are from above, where the vehicle drives on a slope.
+
+        rate: (3,) rad/s, base frame. With the vertical (a, b, c) in the base frame a way is shorter by sqrt(1 - a^2), and the heading
+        turns at (q b + r c) / (1 - a^2) (Beard and McLain, Small Unmanned Aircraft, eq. 3.3).
+        """
+        ahead, aside = np.clip(self.state[:2] / GRAVITY, -STEEPEST, STEEPEST).tolist()
+        level = 1.0 - ahead * ahead
+        upward = sqrt(max(level - aside * aside, 0.0))
+        shorter = sqrt(level)
+        turning = (float(rate[1]) * aside + float(rate[2]) * upward) / level
+        return (ways[0] * shorter, ways[1] * shorter), turning
 
     def _rest(self, dt: float, rate: Floats, force: Floats, stands: bool) -> None:
         """Learns the gyroscope's biases while the vehicle stands and is not tilted: what is felt stays the same."""

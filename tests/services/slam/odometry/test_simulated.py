@@ -16,6 +16,7 @@ from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.sensors import GnssSensor, Mount
+from uvf.models.world.file import Box
 from uvf.runtime.contract.declaration import Writes, topic
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
@@ -140,3 +141,19 @@ def test_a_receiver_keeps_the_pose_in_the_world():
     assert off < 0.2
     assert off < 4.0 * state.position_sigma
     assert heard["ODOMETRY"][0].pose.position.x == pytest.approx(0.0, abs=0.01)
+
+
+def test_on_a_ramp_the_way_is_told_as_it_is_from_above():
+    """12 degrees, 5 m: by the wheels alone it would be 0.1 m too long."""
+    site, slope, length = demo(), np.radians(12.0), 5.0
+    middle = (1.0 + length / 2 * np.cos(slope), 0.0, length / 2 * np.sin(slope) - 0.01)
+    ramp = Box("ramp", tuple(map(float, middle)), (length, 2.0, 0.02), (0.0, -float(slope), 0.0))
+    burger = site.members["burger"]
+    start = CHANGE(burger.entry.start, x=0.0, y=0.0, yaw=0.0)
+    world = CHANGE(site.world, walls=[], boxes=[ramp], cylinders=[], meshes=[], floor=(-5.0, -5.0, 9.0, 5.0))
+    site = replace(site, world=world, members={"burger": replace(burger, entry=CHANGE(burger.entry, start=start))})
+    heard = run([*simulator(site), *slam(site), wheels_only(lambda t: (9.0, 9.0))], 18.0)
+    *_, (_, told, true, way) = beside_truth(heard)
+    assert heard["TRUTH"][-1].position.z > 0.7
+    assert told.pose.position.x == pytest.approx(true.x, rel=5e-3)
+    assert way > 4.0
