@@ -9,6 +9,7 @@ from services.autopilot.ground.params import GroundAutopilotParams
 POSE_LOST = 1.0  # s
 OFFBOARD_SILENT = 0.5  # s
 TIPPED = 0.5  # s
+GIVES_UP = 30.0  # s stuck, after which whoever drives by itself is believed not to get free
 CALMER = 0.8  # of tilt_max
 RECHARGED = 0.03  # of charge, beyond a limit
 ACTIONS = {
@@ -123,7 +124,7 @@ GROUND_RULES: tuple[FailsafeRule[GroundFailsafeInputs], ...] = (
         raised_text="stuck",
         cleared_text="no longer stuck, or to try again",
         detail=lambda k: f"{k.stuck} for {k.stuck_for:.0f} s",
-        action=lambda k: FailsafeAction.WARN if k.by_hand else FailsafeAction.STAND,
+        action=lambda k: FailsafeAction.WARN if k.by_hand or (k.by_itself and k.stuck_for < GIVES_UP) else FailsafeAction.STAND,
         parameters=("stuck_time",),
     ),
     FailsafeRule(

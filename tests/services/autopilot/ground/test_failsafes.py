@@ -146,7 +146,12 @@ def test_each_rule_begins_once_on_its_cause_and_ends_with_it(rule):
 def test_who_is_stuck_on_the_way_home_stands_and_who_is_stuck_by_hand_is_told_only():
     watch = FailsafeWatch(GROUND_RULES)
     assert after(5.0, watch, charge=0.15)[1] == [FailsafeAction.RETURN]
-    assert after(1.0, watch, charge=0.15, stuck_for=5.0)[1] == [FailsafeAction.STAND]
+    assert after(1.0, watch, charge=0.15, stuck_for=31.0)[1] == [FailsafeAction.STAND]
+    assert after(1.0, FailsafeWatch(GROUND_RULES), by_itself=False, stuck_for=5.0)[1] == [FailsafeAction.STAND]
+    assert after(1.0, FailsafeWatch(GROUND_RULES), by_itself=True, stuck_for=5.0) == (
+        [("stuck", True)],
+        [],
+    )  # the planner tries to get free
     assert after(1.0, FailsafeWatch(GROUND_RULES), by_hand=True, stuck_for=5.0) == ([("stuck", True)], [])
 
 
