@@ -102,7 +102,9 @@ def library(tmp_path):
     """Two models as they lie about: one with a model.config that names the newest file, one with a mesh in inches, y up."""
     chair = tmp_path / "lib" / "chair"
     chair.mkdir(parents=True)
-    (chair / "model.config").write_text("<model><name>Chair</name><sdf version='1.4'>old.sdf</sdf><sdf version='1.5'>new.sdf</sdf></model>")
+    (chair / "model.config").write_text(
+        "<model><name>Chair & table</name><sdf version='1.4'>old.sdf</sdf><sdf version='1.5'>new.sdf</sdf></model>"
+    )
     (chair / "new.sdf").write_text(f"<sdf version='1.5'>{model('chair', UNIT, '<pose>0 0 0.5 0 0 0</pose>')}</sdf>")
     meshes = tmp_path / "lib" / "rod" / "meshes"
     meshes.mkdir(parents=True)

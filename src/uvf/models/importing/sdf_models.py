@@ -146,8 +146,12 @@ def _number(element: Any) -> None:
 
 
 def _config(path: Path) -> Any:
+    """People's descriptions have a bare & in them; only the file's name is of use here, so what can be read is."""
     try:
-        return etree.fromstring(path.read_bytes())
+        root = etree.fromstring(path.read_bytes(), etree.XMLParser(recover=True, resolve_entities=False))
+        if root is None:
+            raise ValueError("nothing in it")
+        return root
     except (etree.XMLSyntaxError, ValueError) as error:
         raise BadInput(f"{path}: not valid XML: {' '.join(str(error).split())}; mend it") from error
 
