@@ -29,6 +29,13 @@ def test_a_roof_is_what_hides_much_of_the_floor_from_above(parts, expected):
     assert is_roofed(parts, FLOOR) is expected
 
 
+@pytest.mark.parametrize("faces", [[(0, 1, 2)], [(0, 2, 1)]])
+def test_a_ceiling_of_one_sheet_is_a_roof_whichever_way_it_looks(tmp_path, faces):
+    corners = [(-5.0, -5.0, 3.0), (5.0, -5.0, 3.0), (5.0, 5.0, 3.0)]
+    trimesh.Trimesh(corners, faces, process=False).export(tmp_path / "ceiling.stl")
+    assert is_roofed([Solid("ceiling", "mesh", (1.0, 1.0, 1.0), np.zeros(3), mesh=tmp_path / "ceiling.stl")], FLOOR)
+
+
 def test_what_is_cut_ends_at_the_height_and_nothing_below_is_lost():
     tower = trimesh.creation.cylinder(1.0, 10.0)
     vertices, faces = cut_open(np.asarray(tower.vertices), np.asarray(tower.faces), 1.4)

@@ -26,7 +26,6 @@ THICKEST_SLAB = 0.5  # m
 SHORTEST_SLAB = 3.0  # m
 MOST_SLOPE = np.radians(1.0)  # of a level surface
 SAME_LEVEL = 0.005  # m, between surfaces of one level
-LOWEST_WALL = 0.3  # m, about the floor of a building that is one mesh
 SUNK = 0.002  # m, by which a building's own floor lies below the ground: the engine feels the edges between its triangles
 FARTHEST = 1e4  # m
 WIDEST = 1000.0  # m
@@ -86,7 +85,7 @@ class SdfGround:
             for height in self._levels(thing, least):
                 above = sum(span[0][2] + span[1][2] > 2 * height for other, span in zip(things, spans, strict=True) if other is not thing)
                 is_slab = high[2] <= height + LEVEL and low[2] >= height - THICKEST_SLAB
-                has_walls = high[2] >= height + LOWEST_WALL
+                has_walls = high[2] > height + LEVEL
                 if above >= SLAB_SHARE * (len(things) - 1) and (has_walls or (is_slab and len(things) > 1)):
                     found.append(_Storey(thing, round(height, 4), (x_low, y_low, x_high, y_high), is_slab))
         return min(found, key=lambda storey: (abs(storey.height), -storey.height), default=None)

@@ -24,12 +24,12 @@ def is_roofed(solids: Iterable[Solid], floor: tuple[float, float, float, float])
 
 
 def _roof(solid: Solid) -> float:
-    """Area [m^2], seen from above, of what looks up and lies above ``OVERHEAD``."""
+    """Area [m^2], seen from above, of what lies above ``OVERHEAD``; a sheet may look down."""
     vertices, faces = triangles(solid)
     corners = vertices[faces]
     high = corners[corners[:, :, 2].min(axis=1) > OVERHEAD]
     doubled = np.cross(high[:, 1] - high[:, 0], high[:, 2] - high[:, 0])[:, 2]
-    return float(np.maximum(doubled, 0.0).sum() / 2)
+    return float(max(doubled[doubled > 0.0].sum(), -doubled[doubled < 0.0].sum())) / 2
 
 
 def cut_open(vertices: Floats, faces: Faces, height: float) -> tuple[Floats, Faces]:
