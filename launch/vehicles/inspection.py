@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from launch.vehicles.aircraft_rules import aircraft_faults
+from services.sim_camera.build import camera_faults
+from services.sim_ground.build import rate_faults
 from uvf.models.checks.body_rules import body_faults, body_notes
 from uvf.models.keys import hints_of
 from uvf.models.urdf.model import read_urdf
@@ -15,7 +17,7 @@ from uvf.models.vehicle.air import AirBody
 from uvf.models.vehicle.file import GroundBody, VehicleFile, load_vehicle
 from uvf.models.vehicle.layers import file_of, folders_of
 from uvf.models.vehicle.sensors import Sensors
-from uvf.models.yaml_data import BadInput, convert, nearest, read_yaml
+from uvf.models.yaml_data import BadInput, FileLocation, convert, nearest, read_yaml
 
 SECTIONS = {"ground": GroundBody, "air": AirBody}
 
@@ -52,6 +54,10 @@ def inspect(folder: Path) -> Inspection:
         faults, found.notes = aircraft_faults(folder, found.file.air)
         found.faults += faults
         return found
+    if found.file is not None and found.file.ground is not None:
+        place = FileLocation(str(folder / "vehicle.yaml"))
+        found.faults += rate_faults(found.file.sensors, found.file.ground, place)
+        found.faults += camera_faults(found.file.sensors, place)
     urdf = _urdf(folder, found.file)
     if urdf is not None:
         _inspect_body(found, urdf)

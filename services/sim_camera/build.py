@@ -1,5 +1,6 @@
 """The cameras of a mission: one instance for all of them."""
 
+from collections.abc import Iterator
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -8,15 +9,15 @@ from services.sim_camera.fitted import FittedCamera
 from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
 from uvf.models.aircraft.shape import aircraft_shape
-from uvf.models.scenario import MissionVehicle, Scenario
+from uvf.models.scenario import Scenario
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.model import engine_urdf
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
-from uvf.models.vehicle.sensors import Camera
+from uvf.models.vehicle.sensors import Camera, Sensors
 from uvf.models.world.file import WorldFile
 from uvf.models.world.geometry import land, things
 from uvf.models.world.terrain_picture import raised_mesh, with_ground_of
-from uvf.models.yaml_data import BadInput, nearest
+from uvf.models.yaml_data import BadInput, FileLocation, nearest
 from uvf.runtime.contract.instances import ServiceInstance
 
 OUTPUTS = {"camera": "image", "chase": "chase", "gimbal": "gimbal"}
@@ -25,9 +26,10 @@ OUTPUTS = {"camera": "image", "chase": "chase", "gimbal": "gimbal"}
 
 def build(site: Scenario) -> list[ServiceInstance]:
     """The camera service; empty when no vehicle has a camera. Raises BadInput."""
-    cameras = {(m.name, kind): camera for m in site.members.values() for kind, camera in _cameras(m).items()}
-    for (name, kind), camera in cameras.items():
-        _check(site.members[name], kind, camera)
+    cameras = {(m.name, kind): camera for m in site.members.values() for kind, camera in _cameras(m.file.sensors).items()}
+    for member in site.members.values():
+        for fault in camera_faults(member.file.sensors, FileLocation(str(member.folder / "vehicle.yaml"))):
+            raise BadInput(fault)
     if not cameras:
         return []
     looks = {name: look_at(member.folder, member.file) for name, member in site.members.items()}
@@ -52,17 +54,18 @@ def _rendered(world: WorldFile) -> list[Solid]:
     return things(world) if world.terrain is None or raised is None else [*things(world), land(world.terrain, raised)]
 
 
-def _cameras(member: MissionVehicle) -> dict[str, Camera]:
+def _cameras(sensors: Sensors) -> dict[str, Camera]:
     """By what they are called in the vehicle's file."""
-    return {kind: camera for kind in OUTPUTS if (camera := getattr(member.file.sensors, kind)) is not None}
+    return {kind: camera for kind in OUTPUTS if (camera := getattr(sensors, kind)) is not None}
 
 
-def _check(member: MissionVehicle, kind: str, camera: Camera) -> None:
-    place = f"{member.folder / 'vehicle.yaml'}: sensors: {kind}"
-    if camera.depth and kind != "camera":
-        raise BadInput(f"{place}: depth: only 'camera' sends depth; take it out")
-    if camera.hz > SimCamera.hz:
-        raise BadInput(f"{place}: hz is {camera.hz:g}; the cameras' simulator gives {SimCamera.hz:g} at most")
+def camera_faults(sensors: Sensors, place: FileLocation) -> Iterator[str]:
+    """What the simulator of the cameras does not have of a vehicle's, a line each."""
+    for kind, camera in _cameras(sensors).items():
+        if camera.depth and kind != "camera":
+            yield f"{place.at('sensors', kind, 'depth')}: only 'camera' sends depth; take it out"
+        if camera.hz > SimCamera.hz:
+            yield f"{place.at('sensors', kind, 'hz')}: {camera.hz:g}; the cameras' simulator gives {SimCamera.hz:g} at most"
 
 
 def look_at(folder: Path, file: VehicleFile) -> Look:

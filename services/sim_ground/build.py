@@ -1,5 +1,6 @@
 """The ground simulator of a mission: one instance for all its ground vehicles."""
 
+from collections.abc import Iterator
 from functools import partial
 
 from services.sim_ground.rig import STEP_HZ, Rig
@@ -12,6 +13,7 @@ from uvf.models.mission.file import StartPose, Vehicle
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.urdf.model import check_urdf, engine_urdf, load_urdf
 from uvf.models.vehicle.file import GroundBody, load_vehicle
+from uvf.models.vehicle.sensors import Sensors
 from uvf.models.world.footing import COARSE, Footing
 from uvf.models.world.geometry import solids
 from uvf.models.yaml_data import BadInput, FileLocation
@@ -92,14 +94,18 @@ def _check_chargers(site: Scenario, footing: Footing) -> None:
 
 
 def _check_rates(member: MissionVehicle, body: GroundBody) -> None:
-    place = member.folder / "vehicle.yaml"
+    for fault in rate_faults(member.file.sensors, body, FileLocation(str(member.folder / "vehicle.yaml"))):
+        raise BadInput(fault)
+
+
+def rate_faults(sensors: Sensors, body: GroundBody, place: FileLocation) -> Iterator[str]:
+    """Rates of a vehicle's file that the simulator does not have, a line each."""
     if body.physics_hz % STEP_HZ:
-        raise BadInput(f"{place}: ground: physics_hz is {body.physics_hz:g}; make it a multiple of {STEP_HZ:g}")
-    sensors = member.file.sensors
+        yield f"{place.at('ground', 'physics_hz')}: {body.physics_hz:g}; make it a multiple of {STEP_HZ:g}"
     for kind in ("lidar", "imu", "encoders", "gnss"):
         sensor, most = getattr(sensors, kind), body.physics_hz if kind == "imu" else STEP_HZ
         if sensor is not None and sensor.hz > most:
-            raise BadInput(f"{place}: sensors: {kind}: hz is {sensor.hz:g}; the simulator gives {most:g} at most")
+            yield f"{place.at('sensors', kind, 'hz')}: {sensor.hz:g}; the simulator gives {most:g} at most"
     for i, sonar in enumerate(sensors.sonars):
         if sonar.hz > STEP_HZ:
-            raise BadInput(f"{place}: sensors: sonars[{i}]: hz is {sonar.hz:g}; the simulator gives {STEP_HZ:g} at most")
+            yield f"{place.at('sensors', 'sonars', i, 'hz')}: {sonar.hz:g}; the simulator gives {STEP_HZ:g} at most"

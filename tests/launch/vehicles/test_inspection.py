@@ -83,6 +83,8 @@ BROKEN = {
         0.033,
         ["ground: drive: wheel_radios: unknown key 'wheel_radios'; did you mean 'wheel_radius'?"],
     ),
+    "a lidar that is too fast": (YAML, "sensors.lidar.hz", 200.0, ["sensors: lidar: hz: 200; the simulator gives 100 at most"]),
+    "physics out of step": (YAML, "ground.physics_hz", 240.0, ["ground: physics_hz: 240; make it a multiple of 100"]),
     "an unknown joint": (YAML, "ground.drive.left", "wheel_left", ["no joint 'wheel_left' (named in vehicle.yaml)"]),
     "a missing URDF": (YAML, "ground.urdf", "burgr.urdf", ["burgr.urdf: no such file; did you mean 'burger.urdf'?"]),
     "a lidar below the floor": (

@@ -183,7 +183,7 @@ def spoilt(vehicle, **parts):
 def test_a_camera_faster_than_its_simulator_is_refused():
     sensors = load_vehicle(ROOT / "vehicles", "burger").sensors
     odd = msgspec.structs.replace(sensors, camera=msgspec.structs.replace(CAMERA, hz=30.0))
-    with pytest.raises(BadInput, match="camera: hz is 30; the cameras' simulator gives 5 at most"):
+    with pytest.raises(BadInput, match="camera: hz: 30; the cameras' simulator gives 5 at most"):
         build(spoilt("burger", sensors=odd))
 
 

@@ -91,12 +91,12 @@ def test_another_kind_of_xml(root):
 
 def test_a_physics_rate_that_does_not_fit_the_step(root):
     edit_vehicle(root, lambda data: data["ground"].update(physics_hz=240.0))
-    assert "physics_hz is 240; make it a multiple of 100" in refusal(root)
+    assert "physics_hz: 240; make it a multiple of 100" in refusal(root)
 
 
 def test_a_sensor_rate_that_does_not_fit_the_step(root):
     edit_vehicle(root, lambda data: data["sensors"]["lidar"].update(hz=200.0))
-    assert "lidar: hz is 200; the simulator gives 100 at most" in refusal(root)
+    assert "lidar: hz: 200; the simulator gives 100 at most" in refusal(root)
 
 
 def test_a_start_inside_the_furniture(root):

@@ -12,7 +12,7 @@ from uvf.models.importing.robot import Foreign, ForeignSensor
 Section = dict[str, Any]
 
 FASTEST = 100.0  # Hz, of the simulator of the ground
-FASTEST_CAMERA = 10.0
+FASTEST_CAMERA = 5.0
 MOST_BEAMS = 4096
 LIDARS = ("ray", "gpu_ray", "lidar", "gpu_lidar")
 CAMERAS = ("camera", "depth", "depth_camera", "rgbd", "rgbd_camera", "wideanglecamera", "multicamera")
