@@ -7,6 +7,7 @@ import numpy as np
 from uvf.maths.rotations import from_euler, matrix
 from uvf.models.world.drivable import STEEPEST
 from uvf.models.world.file import Box, WorldFile
+from uvf.models.world.geometry import ramp_box
 
 ROUNDING = 1e-3  # rad
 UPRIGHT = np.radians(50.0)  # from where on a slab is a board that leans, and no ramp
@@ -14,7 +15,7 @@ UPRIGHT = np.radians(50.0)  # from where on a slab is a board that leans, and no
 
 def notes(world: WorldFile) -> Iterator[str]:
     """Yields what looks odd about the angles of a world's boxes but may be meant so, a line each."""
-    for box in world.boxes:
+    for box in (*world.boxes, *map(ramp_box, world.ramps)):
         yield from _in_degrees(box)
         slope = _slope(box)
         if STEEPEST + ROUNDING < slope < UPRIGHT:

@@ -83,6 +83,13 @@ BROKEN = {
         0.033,
         ["ground: drive: wheel_radios: unknown key 'wheel_radios'; did you mean 'wheel_radius'?"],
     ),
+    "a speed that the motors do not reach": (
+        YAML,
+        "ground.max_linear",
+        5.0,
+        ["ground: max_linear: 5 m/s, but without load the motors reach "],
+    ),
+    "a turn that they do not reach": (YAML, "ground.max_angular", 50.0, ["ground: max_angular: 50 rad/s, but without load the motors"]),
     "a lidar that is too fast": (YAML, "sensors.lidar.hz", 200.0, ["sensors: lidar: hz: 200; the simulator gives 100 at most"]),
     "physics out of step": (YAML, "ground.physics_hz", 240.0, ["ground: physics_hz: 240; make it a multiple of 100"]),
     "an unknown joint": (YAML, "ground.drive.left", "wheel_left", ["no joint 'wheel_left' (named in vehicle.yaml)"]),

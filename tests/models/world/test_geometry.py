@@ -5,8 +5,9 @@ import pytest
 
 from uvf.maths.raycast import Rays, cast
 from uvf.models.scenario import ROOT
+from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.scene import scene
-from uvf.models.world.file import Box, Cylinder, Origin, Wall, WorldFile, load_world
+from uvf.models.world.file import Box, Cylinder, Origin, Ramp, Wall, WorldFile, load_world
 from uvf.models.world.footing import Footing
 from uvf.models.world.geometry import all_boxes, floor_plan, reachable_floor, solids
 from uvf.models.yaml_data import BadInput
@@ -115,3 +116,23 @@ def test_a_wall_without_length_is_refused(tmp_path, points, complaint):
     (tmp_path / "flat" / "world.yaml").write_text(text)
     with pytest.raises(BadInput, match=complaint):
         load_world(tmp_path, "flat")
+
+
+def ramped(ramp):
+    return WorldFile(about="test", origin=Origin(0.0, 0.0), floor=(-5.0, -5.0, 9.0, 9.0), ramps=[ramp])
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.7, -2.0])
+def test_a_ramp_rises_from_its_foot_to_its_height(yaw):
+    ramp = Ramp("r", foot=(2.0, 1.0), height=0.4, length=2.5, width=1.2, yaw=yaw)
+    (solid,) = solids(ramped(ramp))
+    corners, _ = triangles(solid)
+    along, across = np.array((np.cos(yaw), np.sin(yaw), 0.0)), np.array((-np.sin(yaw), np.cos(yaw), 0.0))
+    foot = np.array((2.0, 1.0, 0.0))
+    for side in (-0.6, 0.6):
+        for edge in (foot, foot + 2.5 * along + (0.0, 0.0, 0.4)):
+            assert np.linalg.norm(corners - (edge + side * across), axis=1).min() < 1e-9
+    assert corners[:, 2].max() == pytest.approx(0.4)
+    plan = floor_plan(ramped(ramp), 0.05)
+    assert not plan.cells[plan.cell(*(foot + 1.2 * along)[:2])]
+    assert plan.cells[plan.cell(*(foot + 2.3 * along + 0.6 * across)[:2])]  # its side, 0.37 m high

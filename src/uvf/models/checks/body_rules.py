@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
+from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.rotations import rotate
 from uvf.maths.scrubbing import scrubbing, shared_loads
 from uvf.maths.se3 import apply
@@ -66,6 +67,7 @@ def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
             *_base_faults(body),
             *(line for side, joints in body.wheels.items() for joint in joints for line in _wheel_faults(body, side, joint, ground)),
             *_axle_faults(body, ground),
+            *_speed_faults(file.ground, ground),
             *_outline_faults(body, ground),
             *_balance_faults(body),
             *sensor_faults(model, file.sensors, body.poses, FileLocation(str(yaml), ("sensors",))),
@@ -143,6 +145,15 @@ def _axle_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:
         yield from _off_centre(body, (left + right) / 2, "the middle of the axle is")
     else:
         yield from _scrubbing_faults(body, np.array(centres["left"] + centres["right"]), ground)
+
+
+def _speed_faults(body: GroundBody, ground: FileLocation) -> Iterator[str]:
+    """Limits that the motors do not reach, straight on or on the spot."""
+    fastest, drive = body.motor.no_load_speed * body.drive.wheel_radius, body.drive.kinematics
+    if body.max_linear > fastest:
+        yield f"{ground.at('max_linear')}: {body.max_linear:g} m/s, but without load the motors reach {fastest:.3g} m/s"
+    if body.max_angular > (turning := drive.twist(WheelSpeeds(-body.motor.no_load_speed, body.motor.no_load_speed)).angular):
+        yield f"{ground.at('max_angular')}: {body.max_angular:g} rad/s, but without load the motors reach {turning:.3g} rad/s"
 
 
 def _off_centre(body: CheckedBody, place: Floats, what: str) -> Iterator[str]:

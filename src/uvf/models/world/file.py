@@ -66,6 +66,18 @@ class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ] = []
 
 
+class Ramp(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A sloping block that rises from the ground to ``height`` over ``length``, for rovers to drive up."""
+
+    name: Annotated[str, plain("Name that contacts and events use; no two things of a world share one.")]
+    foot: Annotated[tuple[Metres, Metres], plain("Middle of the lower edge x, y [m], world frame, on the ground z = 0.")]
+    height: Annotated[Positive, key("m", "Height of the upper edge.")]
+    length: Annotated[Positive, key("m", "Way from the lower edge to the upper one, seen from above.")]
+    width: Annotated[Positive, key("m", "Width, half to each side of the foot.")]
+    yaw: Annotated[Angle, key("rad", "Direction in which it rises, counter-clockwise from east.")] = 0.0
+    colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")] = (0.6, 0.52, 0.45)
+
+
 class Cylinder(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Stands on its lower face; ``rpy`` tilts it about that face's middle; with a ``path`` it moves by script: a person."""
 
@@ -148,6 +160,7 @@ class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     floor: Annotated[Area, plain("Area that ground vehicles may use: x_min, y_min, x_max, y_max [m].")]
     walls: Annotated[list[Wall], plain("Upright walls.")] = []
     boxes: Annotated[list[Box], plain("Boxes: furniture, ramps, platforms, doors.")] = []
+    ramps: Annotated[list[Ramp], plain("Ramps up to platforms.")] = []
     cylinders: Annotated[list[Cylinder], plain("Cylinders: pillars, people.")] = []
     spheres: Annotated[list[Sphere], plain("Spheres.")] = []
     meshes: Annotated[list[Mesh], plain("Things with a shape from a file.")] = []
@@ -207,8 +220,9 @@ def _check_area(area: tuple[float, float, float, float], place: FileLocation) ->
 def _check_things(world: WorldFile, folder: Path, place: FileLocation) -> None:
     """What is touched is told by its name; scripts close; meshes are there."""
     seen = {TERRAIN} if world.terrain is not None else set()
-    groups: dict[str, Sequence[Box | Cylinder | Sphere | Mesh]] = {
+    groups: dict[str, Sequence[Box | Ramp | Cylinder | Sphere | Mesh]] = {
         "boxes": world.boxes,
+        "ramps": world.ramps,
         "cylinders": world.cylinders,
         "spheres": world.spheres,
         "meshes": world.meshes,

@@ -14,7 +14,7 @@ from uvf.maths.solids import chosen
 from uvf.models.shapes.scene import still
 from uvf.models.shapes.solid import Keyframes, Solid
 from uvf.models.world.drivable import drivable
-from uvf.models.world.file import TERRAIN, Box, Script, Terrain, Wall, WorldFile
+from uvf.models.world.file import TERRAIN, Box, Ramp, Script, Terrain, Wall, WorldFile
 from uvf.models.world.terrain import relief, terrain_mesh
 
 Floats = NDArray[np.float64]
@@ -73,9 +73,19 @@ def wall_boxes(wall: Wall) -> Iterator[Box]:
         yield Box(name=WALL, centre=(float(x), float(y), wall.height / 2), size=size, rpy=(0.0, 0.0, yaw), colour=wall.colour)
 
 
+def ramp_box(ramp: Ramp) -> Box:
+    """The box of which a ramp is the upper face; the rest of it lies below the face, and where that is low in the ground."""
+    slope, along = float(np.arctan2(ramp.height, ramp.length)), np.array((np.cos(ramp.yaw), np.sin(ramp.yaw)))
+    depth = ramp.height * float(np.cos(slope))
+    x, y = np.array(ramp.foot) + along * (ramp.length + depth * np.sin(slope)) / 2
+    centre = (float(x), float(y), float(ramp.height - depth * np.cos(slope)) / 2)
+    size = (float(np.hypot(ramp.length, ramp.height)), ramp.width, depth)
+    return Box(ramp.name, centre, size, (0.0, -slope, ramp.yaw), ramp.colour)
+
+
 def all_boxes(world: WorldFile) -> list[Box]:
-    """The boxes of a world: those of the walls, then the furniture."""
-    return [box for wall in world.walls for box in wall_boxes(wall)] + world.boxes
+    """The boxes of a world: those of the walls, then the furniture, then the ramps."""
+    return [*(box for wall in world.walls for box in wall_boxes(wall)), *world.boxes, *map(ramp_box, world.ramps)]
 
 
 def solids(world: WorldFile, folder: Path = Path()) -> list[Solid]:
