@@ -25,6 +25,11 @@ def test_an_old_topic_is_answered_by_the_new_one(old, new):
     assert nearest(old, [new, "burger/nav/pose"]) == f"it is called '{new}' now"
 
 
+def test_a_key_that_has_moved_into_a_section_is_told_with_it():
+    assert nearest("left_joint", ("urdf", "drive", "radius")) == "it is called 'drive: left' now"
+    assert nearest("track", ("urdf", "radius")) != "it is called 'drive: track' now"
+
+
 def test_the_new_names_of_topics_are_in_the_table():
     known = {t.key for t in (*topics.TOPICS.values(), *topics.REQUESTS.values())}
     assert {f"<owner>/{new}" for old, new in RENAMED.items() if "/" in old} <= known

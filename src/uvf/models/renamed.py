@@ -4,6 +4,8 @@ RENAMED = {
     "comfort": "inflation_radius",
     "left_joint": "drive: left",
     "right_joint": "drive: right",
+    "wheel_radius": "drive: wheel_radius",
+    "track": "drive: track",
     "dislike": "cost_scaling_factor",
     "least_frontier": "min_frontier_size",
     "frontier_worth": "frontier_gain",
@@ -11,7 +13,7 @@ RENAMED = {
     "srv/order": "srv/vehicle_command",
     "state/guest": "state/external_vehicle",
 }
-"""Old -> new, of parameters, keys of files and topics (without their owner)."""
+"""Old -> new, of parameters, keys of files (with the section that they are in now) and topics (without their owner)."""
 
 
 def new_name(name: str) -> str:

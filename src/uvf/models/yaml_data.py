@@ -180,7 +180,7 @@ def convert(data: Any, type_: type[T], file: str, keys: tuple[Key, ...] = ()) ->
 def nearest(name: str, known: Iterable[str], most: int = LISTED) -> str:
     """Hint for an unknown name: ``did you mean 'x'?``, or the list of what there is, ``most`` of it at most."""
     choices = sorted(known)
-    if (now := new_name(name)) in choices:
+    if (now := new_name(name)).partition(":")[0] in choices:
         return f"it is called '{now}' now"
     close = difflib.get_close_matches(name, choices, n=1, cutoff=ALIKE)
     return f"did you mean '{_short(close[0])}'?" if close else f"there are: {listed(choices, most) or 'none'}"
