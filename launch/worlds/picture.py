@@ -1,5 +1,6 @@
 """A picture of a world: on the left the floor plan from above, on the right how it looks."""
 
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -115,6 +116,10 @@ def _cut_one(solid: Solid, under_a_roof: bool, scratch: Path) -> Solid | None:
     may_be_wall = solid.shape == "box" or (solid.shape == "mesh" and (high - low)[:2].max() > WIDE)
     if high[2] <= CUT or solid.path is not None or not (under_a_roof or (may_be_wall and low[2] < CUT)):
         return solid
+    is_upright = abs(solid.orientation[1]) + abs(solid.orientation[2]) < 1e-6
+    if solid.shape == "box" and is_upright and low[2] < CUT:
+        middle = np.array((*solid.position[:2], (low[2] + CUT) / 2))
+        return replace(solid, size=(*solid.size[:2], float(CUT - low[2])), position=middle)
     vertices, faces = cut_open(*triangles(solid), CUT)
     if not len(faces):
         return None
