@@ -201,7 +201,17 @@ VEHICLES = {
     "a rate of zero": ("sensors.imu.hz", 0.0, "sensors: imu: hz: 0 is below 0.01 Hz"),
     "one wheel": ("ground.drive.right", "wheel_left_joint", "right: wheel_left_joint is a wheel of the left side too"),
     "two wheels that are to scrub": ("ground.drive.kind", "skid_steer", "left: one wheel, but skid steer has several on each side"),
-    "several wheels that are not": ("ground.drive.left", ["a", "b"], "left: 2 wheels, but a differential drive has one on each side"),
+    "more wheels on one side": ("ground.drive.left", ["a", "b"], "right: 1 of them, but 2 on the left side; give as many"),
+    "several wheels that are not": (
+        "ground.drive",
+        {"left": ["a", "b"], "right": ["c", "d"], "wheel_radius": 0.1, "track": 0.3},
+        "left: 2 wheels, but a differential drive has one on each side",
+    ),
+    "scrub that is not told": (
+        "ground.drive",
+        {"kind": "skid_steer", "left": ["a", "b"], "right": ["c", "d"], "wheel_radius": 0.1, "track": 0.3},
+        "effective_track: is missing; with four wheels under equal loads it is track + wheelbase^2 / track",
+    ),
     "scrub of two wheels": ("ground.drive.effective_track", 0.2, "effective_track: two wheels do not scrub; leave it out"),
     "another kind": ("kind", "fixed_wing", "kind is 'fixed_wing' but there is no 'air:' section"),
 }

@@ -53,6 +53,10 @@ def check_drive(drive: DriveFile, place: FileLocation) -> None:
     """Raises BadInput."""
     if twice := next((name for name in drive.left_joints if name in drive.right_joints), None):
         raise BadInput(f"{place.at('right')}: {twice} is a wheel of the left side too; name the right one")
+    if len(drive.left_joints) != len(drive.right_joints):
+        raise BadInput(
+            f"{place.at('right')}: {len(drive.right_joints)} of them, but {len(drive.left_joints)} on the left side; give as many"
+        )
     for side, names in (("left", drive.left_joints), ("right", drive.right_joints)):
         if len(set(names)) < len(names):
             raise BadInput(f"{place.at(side)}: a wheel is named twice")
