@@ -43,6 +43,7 @@ class Inputs(Reads):
     info: CameraCalibration | None = optional(topics.CAMERA_INFO)
     sonar: list[Range] = optional(every(topics.SONAR))
     contact: list[Contact] = optional(every(topics.CONTACT))
+    range: list[Range] = optional(every(topics.RANGE))
     team: dict[str, PoseInFrame] = each_vehicle(optional(topics.POSE))
     team_path: dict[str, PosesInFrame] = each_vehicle(optional(topics.PATH))
     team_nav: dict[str, NavStatus] = each_vehicle(optional(topics.NAV_STATUS))

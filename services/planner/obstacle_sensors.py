@@ -1,4 +1,7 @@
-"""All that one vehicle sees and feels obstacles with: its lidar, and depth camera, sonars and bumpers for what the lidar does not see."""
+"""All that one vehicle sees and feels obstacles with: its lidar, and others for what that does not see.
+
+These are depth camera, sonars, bumpers, and range finders that look down.
+"""
 
 from collections import deque
 from math import atan2
@@ -7,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from schemas.messages import CameraCalibration, CompressedImage, Contact, Range
+from services.planner.edge_sense import EdgeSense
 from services.planner.scan_placing import PlacedScan, ScanPlacer
 from uvf.maths.rotations import from_euler, rotate
 from uvf.maths.se3 import Transform, apply, compose
@@ -35,6 +39,7 @@ class OtherReadings(NamedTuple):
     info: CameraCalibration | None
     sonar: list[Range]
     contact: list[Contact]
+    range: list[Range]
 
 
 class ObstacleSensors:
@@ -51,6 +56,7 @@ class ObstacleSensors:
         camera = sensors.camera
         self._base_from_optical = None if camera is None else compose(base_from_sensor(camera.mount), base_from_sensor(OPTICAL))
         self._sonars = {sonar.frame: sonar for sonar in sensors.sonars}
+        self._edges = EdgeSense(sensors.rangefinders)
         self._bumper = BumpSense(footprint, {b.name: (b.angle_min, b.angle_max) for b in sensors.bumpers})
         self._scan: PlacedScan | None = None
         self._waiting: deque[tuple[float, str, GroundSight]] = deque(maxlen=WAITING_MOST)
@@ -73,6 +79,10 @@ class ObstacleSensors:
             elif (newest := self.placer.newest) is not None:
                 bump = self._bumper.feel(seconds(contact.timestamp), newest[1], self.placer.motion, list(contact.sectors))
                 self.bump = self.bump or bump
+        for reading in readings.range:
+            edge = self._edges.look(reading)
+            if edge is not None and (newest := self.placer.newest) is not None:
+                self.bump = self.bump or Bump(newest[1], self.placer.motion, edge, "no floor ahead", "range finder")
         waiting, self._waiting = self._waiting, deque(maxlen=WAITING_MOST)
         for t, sensor, sight in waiting:
             if (pose := self.placer.at(t)) is not None:

@@ -102,6 +102,7 @@ class TrackerService(Service):
         info: CameraCalibration | None = optional(topics.CAMERA_INFO)
         sonar: list[Range] = optional(every(topics.SONAR))
         contact: list[Contact] = optional(every(topics.CONTACT))
+        range: list[Range] = optional(every(topics.RANGE))
         keep_out: Grid | None = optional(topics.KEEP_OUT)
         speed_map: Grid | None = optional(topics.SPEED_MAP)
         team: dict[str, PoseInFrame] = each_vehicle(optional(topics.POSE))
@@ -138,7 +139,7 @@ class TrackerService(Service):
             self._placer.move(seconds(message.timestamp), self._pose)
         self._heed_params(self._share(now.speed_map))
         controller = self._executor.controller
-        self._sensors.take(controller.age, OtherReadings(now.depth, now.info, now.sonar, now.contact), controller.hidden)
+        self._sensors.take(controller.age, OtherReadings(now.depth, now.info, now.sonar, now.contact, now.range), controller.hidden)
         if self._sensors.bump is not None:
             self._executor.draw_back(t, self._pose, self._sensors.bump)
         if (seen := self._placer.place(now.scan)) is not None:
@@ -228,7 +229,8 @@ class TrackerService(Service):
 
     def _felt(self, t: float) -> list[Event]:
         """A touch, and what could not be read."""
-        bump = [_event(t, "touched something", "bumper")] if self._sensors.bump is not None else []
+        felt = self._sensors.bump
+        bump = [_event(t, felt.text, felt.cause)] if felt is not None else []
         if not self._sensors.faults or t - self._complained_at < EVENTS_EVERY:
             return bump
         self._complained_at = t

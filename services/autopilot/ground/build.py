@@ -3,12 +3,14 @@
 from services.autopilot.ground import fence as fences
 from services.autopilot.ground.mission import refusal
 from services.autopilot.ground.params import GroundAutopilotParams
+from services.autopilot.ground.safety import SensorLooks
 from services.autopilot.ground.service import GroundAutopilot
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.plans.fences import fence_message, fencing
 from uvf.runtime.messages.plans.mission_files import item_from_file
+from uvf.sensors.cliffs import floor_sights
 from uvf.sensors.fitted import sweeping_of
 from uvf.sensors.sweeping import AT_ONCE
 
@@ -30,13 +32,16 @@ def _host(member: MissionVehicle, site: Scenario) -> ServiceInstance:
     if outside := fences.refusal(items, fencing(fence), body.radius):
         raise BadInput(f"{site.mission_path}: {member.name}: fence: {outside}")
     imu, lidar = member.file.sensors.imu, member.file.sensors.lidar
-    imu_rpy = imu.mount.rpy if imu is not None else (0.0, 0.0, 0.0)
-    sweeping = sweeping_of(lidar) if lidar is not None else AT_ONCE
+    looks = SensorLooks(
+        imu.mount.rpy if imu is not None else (0.0, 0.0, 0.0),
+        sweeping_of(lidar) if lidar is not None else AT_ONCE,
+        floor_sights(member.file.sensors.rangefinders),
+    )
     armed = (job.explore or bool(items)) if job.armed is None else job.armed
     begins = armed and (job.explore or bool(items))
     params = member.params("autopilot_ground", GroundAutopilotParams)
 
     def make() -> GroundAutopilot:
-        return GroundAutopilot(body, (start.x, start.y), (armed, begins, items), member.entry.system_id, params, fence, imu_rpy, sweeping)
+        return GroundAutopilot(body, (start.x, start.y), (armed, begins, items), member.entry.system_id, params, fence, looks)
 
     return ServiceInstance(GroundAutopilot, make, member.name)

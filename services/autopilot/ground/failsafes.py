@@ -44,6 +44,8 @@ class GroundFailsafeInputs:
     charge: float = 1.0  # 0..1
     fence: bool = False
     """It has been stopped before the fence."""
+    edge: bool = False
+    """It has been stopped before an edge."""
 
 
 GROUND_RULES: tuple[FailsafeRule[GroundFailsafeInputs], ...] = (
@@ -115,6 +117,16 @@ GROUND_RULES: tuple[FailsafeRule[GroundFailsafeInputs], ...] = (
         detail=lambda k: "it may drive where that leads away",
         action=lambda k: ACTIONS[k.params.fence_action],
         parameters=("max_distance", "fence_action"),
+        clear_delay=1.0,
+    ),
+    FailsafeRule(
+        "edge",
+        trigger=lambda k: k.edge,
+        clear=lambda k: not k.edge,
+        raised_text="no floor ahead: stopped",
+        cleared_text="floor ahead again",
+        detail=lambda k: "a range finder that looks down sees none; it may drive away from there",
+        action=lambda k: FailsafeAction.WARN,
         clear_delay=1.0,
     ),
     FailsafeRule(

@@ -21,6 +21,7 @@ from schemas.messages import (
     PoseInFrame,
     RallyPoints,
     RallyRequest,
+    Range,
     Reply,
     SetCurrentRequest,
     VehicleCommandRequest,
@@ -51,6 +52,7 @@ class Inputs(Reads):
     scan: LaserScan | None = optional(topics.SCAN)
     correction: FrameTransform | None = optional(topics.TF_MAP)
     battery: Battery | None = optional(topics.BATTERY)
+    range: list[Range] = optional(every(topics.RANGE))
     arm: list[ArmRequest] = request(topics.ARM)
     set_mode: list[ModeRequest] = request(topics.SET_MODE)
     set_mission: list[MissionRequest] = request(topics.SET_MISSION)

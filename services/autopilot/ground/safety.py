@@ -1,9 +1,13 @@
 """Keeps watch over a ground vehicle: what its failsafes look at, and its fence."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import NamedTuple
 
-from schemas.messages import Battery, Event, Fence, FrameTransform, Imu, LaserScan, Link, Mode, PoseInFrame, WheelTicks
+from schemas.messages import Battery, Event, Fence, FrameTransform, Imu, LaserScan, Link, Mode, PoseInFrame, Range, WheelTicks
 from services.autopilot.failsafes import FailsafeAction, FailsafeOrder, FailsafeWatch
+from services.autopilot.ground.edges import EdgeWatch
 from services.autopilot.ground.failsafes import GROUND_RULES, STANDS, GroundFailsafeInputs
 from services.autopilot.ground.fence import GroundPose, stops
 from services.autopilot.ground.mission import Point
@@ -15,7 +19,8 @@ from uvf.maths.kinematics import WheelSpeeds
 from uvf.models.mission.fence import Fencing, near_home
 from uvf.models.vehicle.file import GroundBody
 from uvf.runtime.messages.plans.fences import fence_fault, fencing
-from uvf.sensors.sweeping import Sweeping
+from uvf.sensors.cliffs import FloorSight
+from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
 BY_ITSELF = (Mode.MODE_MISSION, Mode.MODE_RETURN)
 
@@ -33,6 +38,7 @@ class GroundSensorInputs:
     scan: LaserScan | None = None
     correction: FrameTransform | None = None
     battery: Battery | None = None
+    ranges: list[Range] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,10 +54,18 @@ class GroundActivity:
     """m/s at the rims, of the cycle before."""
 
 
+class SensorLooks(NamedTuple):
+    """How the sensors look. imu_rpy: of its mount; sweeping: of the lidar; floor: sights of it by the range finders' frames."""
+
+    imu_rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    sweeping: Sweeping = AT_ONCE
+    floor: Mapping[str, FloorSight] = MappingProxyType({})
+
+
 class GroundFailsafeMonitor:
     """Evaluates the failsafes and the fence: ``step`` once a cycle, then ``brakes`` for the velocity that was chosen."""
 
-    def __init__(self, body: GroundBody, fence: Fence, imu_rpy: tuple[float, float, float], sweeping: Sweeping) -> None:
+    def __init__(self, body: GroundBody, fence: Fence, looks: SensorLooks) -> None:
         self.watch = FailsafeWatch(GROUND_RULES)
         self.fence = fence
         self._plan: Fencing = fencing(fence)
@@ -64,8 +78,9 @@ class GroundFailsafeMonitor:
         self._link = LinkWatch()
         self._times = {"pose_age": 0.0, "setpoint_age": 0.0}
         self._wheels = WheelSpeedometer(body.drive.wheel_radius)
-        self._grip, self._tilt, self._sight = StuckDetector(self._wheels), TiltEstimate(imu_rpy), SensorWatch(sweeping)
-        self._fenced = self._driven = False
+        self._grip, self._tilt, self._sight = StuckDetector(self._wheels), TiltEstimate(looks.imu_rpy), SensorWatch(looks.sweeping)
+        self._edges = EdgeWatch(looks.floor)
+        self._fenced = self._driven = self._edged = False
         self.is_outside = False
         """Of its fence."""
         self.breaches = 0
@@ -122,6 +137,7 @@ class GroundFailsafeMonitor:
         self._grip.step(doing.asked, sensed.speed, dt)
         self._tilt.step(sensed.imu, dt)
         self._sight.step(t, sensed.scan, sensed.correction, self._wheels.travelled)
+        self._edges.step(t, sensed.ranges)
 
     def _known(self, t: float, doing: GroundActivity, params: GroundAutopilotParams) -> GroundFailsafeInputs:
         return GroundFailsafeInputs(
@@ -140,12 +156,19 @@ class GroundFailsafeMonitor:
             tilt=self._tilt.angle,
             charge=self.battery.remaining if self.battery is not None else 1.0,
             fence=self._fenced,
+            edge=self._edged,
         )
 
     def brakes(self, here: GroundPose | None, linear: float) -> bool:
         """Whether the vehicle at ``linear`` [m/s] has to stop before the fence; it may still turn away from it."""
         self._fenced = here is not None and stops(self.fencing, here, linear, self._keep)
         return self._fenced
+
+    def halts(self, linear: float) -> bool:
+        """Whether the vehicle that is to drive at ``linear`` [m/s] has to stand at once before an edge; it may drive away from it."""
+        halts = self._edges.stops(linear)
+        self._edged = halts or (self._edged and self._edges.is_near)
+        return halts
 
     def obstacle(self, mode: int) -> str:
         """What it lacks to move autonomously in ``mode``; "" if it may move."""

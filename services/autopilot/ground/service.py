@@ -28,7 +28,7 @@ from services.autopilot.ground import interface, orders
 from services.autopilot.ground.mission import MissionEngine, Point, mission_of, refusal, vector
 from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, ActiveCommand, VelocityCommand, choose
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.ground.safety import GroundActivity, GroundFailsafeMonitor, GroundSensorInputs, mode_of, place
+from services.autopilot.ground.safety import GroundActivity, GroundFailsafeMonitor, GroundSensorInputs, SensorLooks, mode_of, place
 from services.autopilot.multiplexing import DISARMED_OFFBOARD, Once
 from services.autopilot.parameter_state import ToldParams
 from services.autopilot.safe_state import standing
@@ -38,7 +38,6 @@ from uvf.models.vehicle.file import GroundBody
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import mode_name, seconds, stamp, yaw_of
 from uvf.runtime.state.stop_all import StopStatus
-from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
 STATUS_EVERY, PROGRESS_EVERY = 5, 25
 """Steps between two messages: 10 Hz and 2 Hz."""
@@ -70,16 +69,12 @@ class GroundAutopilot(Service):
         system_id: int,
         params: GroundAutopilotParams,
         fence: Fence | None = None,
-        imu_rpy: tuple[float, float, float] = (0.0, 0.0, 0.0),
-        sweeping: Sweeping = AT_ONCE,
+        looks: SensorLooks = SensorLooks(),  # noqa: B008  it cannot be changed
     ) -> None:
-        """home: start pose [m, world]; job: whether it is armed, whether it begins at once, and the mission's items, perhaps none.
-
-        imu_rpy: of its mount; sweeping: of its lidar.
-        """
+        """home: start pose [m, world]; job: whether it is armed, whether it begins at once, and the mission's items, perhaps none."""
         self.params = params
         self._body = body
-        self._made_with = (body, home, system_id, imu_rpy, sweeping)
+        self._made_with = (body, home, system_id, looks)
         self._system_id = system_id
         self._drive = body.drive.kinematics
         self._ramp = VelocityRamp(
@@ -95,7 +90,7 @@ class GroundAutopilot(Service):
         self._engine = MissionEngine(home, params.acceptance_radius)
         self._engine.load(mission_of(items, stamp(0.0)))
         self._mission_is_new = True
-        self._safety = GroundFailsafeMonitor(body, fence or Fence(), imu_rpy, sweeping)
+        self._safety = GroundFailsafeMonitor(body, fence or Fence(), looks)
         self._fence_is_new = True
         self._told_params = ToldParams()
         self._reboots = False
@@ -111,7 +106,9 @@ class GroundAutopilot(Service):
         self._handle_stop_all(t, now.stop)
         self._here = place(now.pose, yaw_of(now.pose.pose.orientation)) if now.pose is not None else None
         speed = now.odometry.linear_velocity.x if now.odometry is not None else None
-        self._watch(t, GroundSensorInputs(self._here, speed, now.link, now.imu, now.ticks, now.scan, now.correction, now.battery))
+        self._watch(
+            t, GroundSensorInputs(self._here, speed, now.link, now.imu, now.ticks, now.scan, now.correction, now.battery, now.range)
+        )
         out = self.Outputs()
         out.arm = [self._arm(t, r) for r in now.arm]
         out.set_mode = [self._set_mode(t, r) for r in now.set_mode]
@@ -242,9 +239,9 @@ class GroundAutopilot(Service):
     def _reboot(self) -> None:
         """As after power has been off, with mission, fence and rally points of now."""
         rally = self._rally
-        body, home, system_id, imu_rpy, sweeping = self._made_with
+        body, home, system_id, looks = self._made_with
         job = (False, False, list(self._engine.mission.items))
-        vars(self).update(vars(GroundAutopilot(body, home, job, system_id, self.params, self._safety.fence, imu_rpy, sweeping)))
+        vars(self).update(vars(GroundAutopilot(body, home, job, system_id, self.params, self._safety.fence, looks)))
         self._set_rally(rally)
 
     def _follow_mission(self, t: float, position: Point | None) -> None:
@@ -270,6 +267,8 @@ class GroundAutopilot(Service):
         wanted = within_limits(self._choice.linear, self._choice.angular, self._ramp.limits, top_speed)
         if self._safety.brakes(self._here, wanted[0]):
             wanted = 0.0, wanted[1]
+        if self._safety.halts(wanted[0] or self._ramp.linear):
+            wanted, self._ramp.linear = (0.0, wanted[1]), 0.0
         left, right = self._drive.wheels(Twist(*self._ramp.lead(*wanted, 1.0 / self.hz)))
         return WheelCommand(timestamp=stamp(t), left=left, right=right)
 

@@ -10,7 +10,7 @@ from uvf.sensors.sweeping import AT_ONCE
 TOP = 0.3
 """m, height of the vehicle."""
 NO_OTHERS = Sensors()
-NOTHING_ELSE = {"depth": [], "info": None, "sonar": [], "contact": []}
+NOTHING_ELSE = {"depth": [], "info": None, "sonar": [], "contact": [], "range": []}
 
 
 def sensors_of(footprint, base_from_lidar=IDENTITY, sweeping=AT_ONCE, sensors=NO_OTHERS):

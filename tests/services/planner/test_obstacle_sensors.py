@@ -12,7 +12,7 @@ from tests.services.autopilot.ground.test_service import BODY
 from tests.services.planner.planner_bench import Bench, asked, world
 from tests.services.planner.test_tracker_service import TrackerBench
 from uvf.maths.se3 import IDENTITY
-from uvf.models.vehicle.sensors import Bumper, Camera, Mount, Sensors, Sonar
+from uvf.models.vehicle.sensors import Bumper, Camera, Mount, RangeFinder, Sensors, Sonar
 from uvf.runtime.messages.convert import stamp
 
 WIDTH, HEIGHT, FOV = 80, 60, 1.2
@@ -20,7 +20,8 @@ FOCAL = WIDTH / 2 / tan(FOV / 2)
 INFO = CameraCalibration(width=WIDTH, height=HEIGHT, K=(FOCAL, 0, (WIDTH - 1) / 2, 0, FOCAL, (HEIGHT - 1) / 2, 0, 0, 1))
 CAMERA = Camera(mount=Mount(xyz=(0.1, 0.0, 0.2)), hz=5.0, width=WIDTH, height=HEIGHT, fov=FOV, depth=True)
 SONAR = Sonar(mount=Mount(xyz=(0.1, 0.0, 0.1)), hz=10.0, fov=0.5, range_min=0.02, range_max=3.0)
-FITTED = Sensors(camera=CAMERA, sonars=[SONAR], bumpers=[Bumper("front", -0.8, 0.8), Bumper("rear", 2.3, 3.9)])
+FINDER = RangeFinder(Mount((0.12, 0.0, 0.06), (0.0, 1.2, 0.0)), hz=20.0, range_min=0.005, range_max=0.3)
+FITTED = Sensors(camera=CAMERA, sonars=[SONAR], rangefinders=[FINDER], bumpers=[Bumper("front", -0.8, 0.8), Bumper("rear", 2.3, 3.9)])
 
 
 def picture(t, pallet):
@@ -85,6 +86,27 @@ def test_it_draws_back_from_a_touch_and_goes_another_way():
     bench.step(60, ahead=9.0, moves=True)
     assert bench.places[-1][0] > place + BODY.radius
     assert min(np.hypot(x - place, y) for x, y in bench.places[-60:]) > BODY.radius
+
+
+def floor_seen(t, edge, x):
+    """What the range finder measures that looks at the floor 0.143 m ahead of ``x`` [m], where the floor ends at ``edge`` [m]."""
+    return Range(timestamp=stamp(t), frame_id="v/rangefinder", range=0.0644 if x + 0.143 < edge else 0.0)
+
+
+def test_it_draws_back_from_an_edge_of_the_floor_and_tells_it_once():
+    bench = tracker()
+    for _ in range(60):
+        bench.step(1, ahead=9.0, moves=True, range=[floor_seen(bench.t + 0.07, 1.0, bench.pose[0])])
+    assert bench.events[0] == "no floor ahead"
+    assert 0.7 < max(x for x, _ in bench.places) < 1.0
+    assert bench.events.count("no floor ahead") < 4
+
+
+@pytest.mark.parametrize("reading", [np.nan, -1.0, np.inf])
+def test_what_is_no_range_is_no_floor(reading):
+    bench = tracker()
+    bench.step(2, ahead=9.0, range=[Range(timestamp=stamp(bench.t + 0.07), frame_id="v/rangefinder", range=reading)])
+    assert bench.events == ["no floor ahead"]
 
 
 def test_pushed_from_behind_as_it_stands_it_moves_off_forwards():

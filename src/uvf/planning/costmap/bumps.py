@@ -24,11 +24,16 @@ LEFT, FREE = 0.05, 0.5  # m from where it was touched, and s without touching, f
 
 
 class Bump(NamedTuple):
-    """A touch of the vehicle at ``pose``. motion: [m/s], [rad/s] that led to it; points (n, 2) [m, base frame] where it may have been."""
+    """A touch of the vehicle at ``pose``. motion: [m/s], [rad/s] that led to it; points (n, 2) [m, base frame] where it may have been.
+
+    text, cause: what people are told.
+    """
 
     pose: Pose2
     motion: Motion
     points: Floats
+    text: str = "touched something"
+    cause: str = "bumper"
 
 
 class BumpSense:

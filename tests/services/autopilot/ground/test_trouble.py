@@ -1,5 +1,6 @@
 """Each failsafe of a ground vehicle by its real cause, in drives with physics: what is said, what is done, and how it recovers."""
 
+import msgspec
 import pytest
 
 from schemas import topics
@@ -9,6 +10,8 @@ from tests.services.autopilot.proofs import shows
 from uvf.maths.rotations import from_euler
 from uvf.models.vehicle.air import BatteryPack
 from uvf.models.vehicle.file import Friction
+from uvf.models.vehicle.sensors import Mount, RangeFinder
+from uvf.models.world.file import Box, Origin, Ramp, WorldFile
 from uvf.runtime.messages.convert import planar_pose, quaternion
 
 ON_ITS_OWN = {"job": THERE_AND_BACK}
@@ -73,6 +76,55 @@ def test_driven_by_hand_it_stops_before_its_fence_may_turn_back_and_is_missed_wh
     trip.run(8.5)
     assert trip.mode == "HOLD"
     return trip
+
+
+PLATFORM = WorldFile(
+    about="test",
+    origin=Origin(0.0, 0.0),
+    floor=(0.0, 0.0, 10.0, 10.0),
+    boxes=[Box("platform", (5.5, 4.4, 0.1), (2.0, 2.0, 0.2))],
+    ramps=[Ramp("ramp", (2.5, 4.4), height=0.2, length=2.0, width=1.0)],
+)
+LOOKS_DOWN = RangeFinder(Mount((0.09, 0.0, 0.06), (0.0, 1.2, 0.0)), hz=20.0, range_min=0.005, range_max=0.3, noise=0.002)
+
+
+@shows("ground", "edge")
+def test_it_stands_before_an_edge_that_a_range_finder_sees_and_may_drive_away(tmp_path):
+    trip = Trip(tmp_path, entry=ON_ITS_OWN, thinks=False, world=PLATFORM, sensors={"rangefinders": [LOOKS_DOWN]})
+    trip.hand = (0.25, 0.0)
+    trip.run(0.5)
+    trip.take("manual")
+    trip.run(9.0)
+    assert 6.3 < trip.truth[-1][1].position.x < 6.5 and trip.truth[-1][1].position.z > 0.19
+    assert trip.way(8.0, 9.0) < 0.01
+    trip.hand = (-0.25, 0.0)
+    trip.run(13.0)
+    assert trip.way(9.0, 13.0) > 0.4
+    return trip
+
+
+def looks_aside(frame, x, y, yaw):
+    return RangeFinder(Mount((x, y, 0.06), (0.0, 1.2, yaw)), hz=20.0, range_min=0.005, range_max=0.3, noise=0.002, frame=frame)
+
+
+def test_it_explores_a_table_and_stays_on_it(tmp_path):
+    table, posts = (
+        Box("table", (5.5, 4.4, 0.1), (4.0, 4.0, 0.2)),
+        [Box(f"post_{x}", (x, y, 0.6), (0.3, 0.3, 1.0)) for x, y in ((6.5, 5.2), (4.2, 3.2))],
+    )
+    world = msgspec.structs.replace(PLATFORM, boxes=[table, *posts], ramps=[Ramp("ramp", (1.5, 4.4), height=0.2, length=2.0, width=1.0)])
+    finders = [
+        LOOKS_DOWN,
+        looks_aside("left", 0.075, 0.06, 0.9),
+        looks_aside("right", 0.075, -0.06, -0.9),
+        looks_aside("back", -0.1, 0.0, 3.1416),
+    ]
+    trip = Trip(tmp_path, entry={"job": {"explore": True}}, world=world, sensors={"rangefinders": finders})
+    trip.run(60.0)
+    assert min(m.position.z for _, m in trip.truth) > 0.19
+    assert trip.told("no floor ahead: stopped")
+    xs, ys = [m.position.x for _, m in trip.truth], [m.position.y for _, m in trip.truth]
+    assert max(xs) - min(xs) + max(ys) - min(ys) > 3.0
 
 
 @shows("ground", "stuck")

@@ -20,8 +20,8 @@ START = {"x": 5.0, "y": 4.4, "yaw": 0.0}
 THERE_AND_BACK = {"mission": [{"x": 6.2, "y": 4.4}, {"x": 5.0, "y": 4.4}, {"kind": "jump", "jump_to": 0, "repeat": -1}]}
 
 
-def site(folder, faults, entry, ground):
-    """entry: more of the vehicle's in the mission; ground: what is different about the body."""
+def site(folder, faults, entry, ground, world=None, sensors=None):
+    """entry: more of the vehicle's in the mission; ground, sensors: what is different about the body and what it carries."""
     path = folder / "trip.yaml"
     vehicle = {"model": "burger", "system_id": 1, "start": START, **entry}
     listed = [dict(zip(("part", "kind", "at", "until", "size"), fault, strict=False), vehicle="burger") for fault in faults]
@@ -29,16 +29,17 @@ def site(folder, faults, entry, ground):
     made = load_scenario(path)
     member = made.members["burger"]
     body = msgspec.structs.replace(member.file.ground, **ground)
-    member = dataclasses.replace(member, file=msgspec.structs.replace(member.file, ground=body))
-    return dataclasses.replace(made, members={"burger": member})
+    carried = msgspec.structs.replace(member.file.sensors, **(sensors or {}))
+    member = dataclasses.replace(member, file=msgspec.structs.replace(member.file, ground=body, sensors=carried))
+    return dataclasses.replace(made, members={"burger": member}, world=world or made.world)
 
 
 class Trip:
     """``hand``, ``outside``: (m/s, rad/s) that somebody commands, as long as told to; ``linked``: whether a ground station is heard."""
 
-    def __init__(self, folder, faults=(), entry=None, ground=None, thinks=True):
-        """thinks: with SLAM and planner."""
-        made = site(folder, faults, entry or {}, ground or {})
+    def __init__(self, folder, faults=(), entry=None, ground=None, thinks=True, **changed):
+        """thinks: with SLAM and planner; changed: world and sensors, as for ``site``."""
+        made = site(folder, faults, entry or {}, ground or {}, **changed)
         self.lockstep = Lockstep([*simulator(made), *hosts(made), *(slam(made) + planner(made) if thinks else [])])
         self.bus = self.lockstep.bus
         self.truth, self.status = self._record(topics.TRUTH), self._record(topics.STATUS)
