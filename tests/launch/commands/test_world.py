@@ -53,19 +53,21 @@ def test_a_start_inside_of_something_is_told_by_the_check_with_a_mission():
     assert "nothing wrong" in said("check", "house", "-m", "demo")
 
 
-def test_a_new_world_is_drawn_and_not_made_twice(worlds, tmp_path, monkeypatch):
+def test_a_new_world_is_drawn_and_not_made_twice(worlds, tmp_path):
     said("new", "mine", "--rooms", "2", "--seed", "5")
     assert "is there already" in said("new", "mine", code=2)
     assert "cannot be called" in said("new", "../mine", code=2)
     said("picture", "mine", "--out", tmp_path / "mine.png")
     assert (tmp_path / "mine.png").read_bytes().startswith(b"\x89PNG")
-    monkeypatch.setenv("UVF_RUNS", str(tmp_path / "runs"))
-    assert said("picture", "mine") == f"uvf: {tmp_path / 'runs' / 'worlds' / 'mine.png'}\n"
-    assert (tmp_path / "runs" / "worlds" / "mine.png").is_file()
+    assert said("picture", "mine") == f"uvf: {worlds / 'mine' / 'picture.png'}\n"
+    assert (worlds / "mine" / "picture.png").is_file()
 
 
 def test_an_import_tells_what_it_left_out(worlds, tmp_path):
-    text = "<sdf version='1.6'><world name='w'><light name='lamp'/><include><uri>model://sun</uri></include></world></sdf>"
+    box = (
+        "<model name='box'><link name='l'><collision name='c'><geometry><box><size>1 1 1</size></box></geometry></collision></link></model>"
+    )
+    text = f"<sdf version='1.6'><world name='w'><light name='lamp'/><include><uri>model://sun</uri></include>{box}</world></sdf>"
     (tmp_path / "a.world").write_text(text)
     told = said("import", tmp_path / "a.world", "--name", "a")
     assert "note: lights are not simulated: lamp" in told
