@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 
 from schemas.messages import Range
-from uvf.runtime.messages.convert import seconds
 from uvf.sensors.cliffs import FloorSight
 
 TWICE = 2  # readings in a row without a floor, so that one that is lost stops nobody
@@ -25,7 +24,7 @@ class EdgeWatch:
             frame = reading.frame_id.rpartition("/")[2]
             if (sight := self._sights.get(frame)) is not None:
                 self._misses[frame] = self._misses.get(frame, 0) + 1 if sight.has_ended(reading.range) else 0
-                self._heard[frame] = max(seconds(reading.timestamp), self._heard.get(frame, 0.0))
+                self._heard[frame] = t
         ended = [self._sights[f] for f, at in self._heard.items() if self._misses[f] >= TWICE or t - at > SILENT]
         self._ahead = any(sight.place[0] > 0.0 for sight in ended)
         self._behind = any(sight.place[0] <= 0.0 for sight in ended)
