@@ -119,6 +119,7 @@ CAUSES = {
     "offboard": {"setpoint_age": 1.0},
     "fence": {"fence": True},
     "stuck": {"stuck_for": 5.0, "stuck": "wheels are held fast"},
+    "edge": {"edge": True},
     "tipped": {"tilt": 0.8},
     "battery_low": {"charge": 0.15},
     "battery_critical": {"charge": 0.05},
