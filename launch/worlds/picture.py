@@ -19,7 +19,7 @@ from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.scene import primitives
 from uvf.models.shapes.solid import Solid, pose_at
 from uvf.models.vehicle.sensors import Camera, Mount
-from uvf.models.world.cutaway import cut_open, is_roofed
+from uvf.models.world.cutaway import CUT, cut_height, cut_open
 from uvf.models.world.file import WorldFile
 from uvf.models.world.geometry import FloorPlan, solids, things
 from uvf.models.world.terrain import relief
@@ -35,7 +35,6 @@ ON_THE_FLOOR = 0.02  # m, what lies lower is not drawn into the plan
 ALL = 1e3  # m, above everything
 WIDE = 3.0  # m, from which on a mesh is taken for a building
 LINES = 2.0  # m, between lines of equal height
-CUT = 1.4  # m, without terrain: higher walls and things are shown cut there, so that one looks into the rooms
 
 
 def save_picture(world: WorldFile, plan: FloorPlan, reachable: Mask, path: Path) -> None:
@@ -63,7 +62,7 @@ def draw_plan(axes: Axes, world: WorldFile, plan: FloorPlan, reachable: Mask | N
         lines = axes.contour(land.x, land.y, land.heights, np.arange(0.0, land.heights.max(), LINES), colors="saddlebrown", linewidths=0.6)
         axes.clabel(lines, fontsize=7)
     parts = things(world)
-    top = CUT if is_roofed(parts, world.floor) else ALL
+    top = cut_height(world, parts)
     for solid in parts:
         _draw_solid(axes, solid, top)
         if solid.path is not None:
@@ -76,7 +75,7 @@ def draw_plan(axes: Axes, world: WorldFile, plan: FloorPlan, reachable: Mask | N
 
 def _draw_solid(axes: Axes, solid: Solid, top: float) -> None:
     """The shadow on the ground of what lies below ``top`` [m]."""
-    shadow = footprint(primitives(solid), ON_THE_FLOOR, top)
+    shadow = footprint(primitives(solid), ON_THE_FLOOR, min(top, ALL))
     look: dict[str, Any] = {"facecolor": (*solid.colour, 0.75), "edgecolor": (0, 0, 0, 0.35), "linewidth": 0.3}
     if solid.shape == "mesh":
         look["edgecolor"] = "none"
@@ -105,7 +104,7 @@ def _cut(parts: list[Solid], world: WorldFile, scratch: Path) -> list[Solid]:
     """Under a roof everything ends at ``CUT``, else what may be a wall: upright boxes and wide meshes."""
     if world.terrain:
         return parts
-    everything = is_roofed(parts, world.floor)
+    everything = cut_height(world, parts) == CUT
     return [cut for solid in parts if (cut := _cut_one(solid, everything, scratch)) is not None]
 
 

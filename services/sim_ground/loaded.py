@@ -20,7 +20,6 @@ class LoadedVehicle:
     """Joints of the driven wheels, those of the left side first."""
     motors: tuple[WheelMotor, ...]
     com_in_base: tuple[Floats, Floats]
-    up_in_com: tuple[float, float, float]
     friction: float
     """Coefficient of the wheels."""
     treads: Treads | None

@@ -20,7 +20,7 @@ from services.sim_ground.touching import FLOOR, SOLE, Bodies
 from services.sim_ground.treads import Treads
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.maths.rotations import IDENTITY, from_euler, matrix, multiply, rotate
+from uvf.maths.rotations import IDENTITY, from_euler, multiply, rotate
 from uvf.models.shapes.solid import Keyframes, Solid, pose_at
 from uvf.models.vehicle.file import Friction, GroundBody
 
@@ -83,9 +83,7 @@ class BulletWorld:
         soles = self._soles(index, vehicle, com_in_base)
         self._place(index, vehicle, com_in_base)
         motors = tuple(WheelMotor(vehicle.body.motor, 1 / self.rate) for _ in wheels)
-        x, y, z = matrix(com_in_base[1])[2]
-        up = (float(x), float(y), float(z))
-        return LoadedVehicle(index, wheels, motors, com_in_base, up, max(friction.mu, friction.mu2), treads, soles)
+        return LoadedVehicle(index, wheels, motors, com_in_base, max(friction.mu, friction.mu2), treads, soles)
 
     def _soles(self, index: int, vehicle: BodyPlacement, com_in_base: tuple[Floats, Floats]) -> frozenset[int]:
         """The links with which it stands on a level floor."""
@@ -200,14 +198,10 @@ class BulletWorld:
     def touches(self, vehicle: str) -> list[Touch]:
         """Everything that a vehicle touches now; what it stands on only if it has fallen over."""
         loaded = self._vehicles[vehicle]
-        contacts = self.engine.contacts(loaded.index)
-        return self._bodies.felt(contacts, loaded.soles, self._motion(loaded), self._has_fallen(loaded))
-
-    def _has_fallen(self, loaded: LoadedVehicle) -> bool:
-        x, y, z, w = self.engine.pose(loaded.index).xyzw
-        a, b, c = loaded.up_in_com
-        up: float = 2 * ((x * z - w * y) * a + (y * z + w * x) * b) + (1 - 2 * (x * x + y * y)) * c
-        return up < FALLEN
+        contacts, motion = self.engine.contacts(loaded.index), self._motion(loaded)
+        _, x, y, _ = motion[1].tolist()
+        has_fallen = 1 - 2 * (x * x + y * y) < FALLEN
+        return self._bodies.felt(contacts, loaded.soles, motion, has_fallen)
 
     def put(self, name: str, solid: Solid, mass: float) -> str:
         """Adds a solid of ``mass`` [kg], 0 = fixed. Returns what it would stand in, "" when it is added."""

@@ -3,9 +3,8 @@
 from collections.abc import Mapping, Sequence
 
 from schemas.messages import Range
-from uvf.sensors.cliffs import FloorSight
+from uvf.sensors.cliffs import FloorSight, FloorWatch
 
-TWICE = 2  # readings in a row without a floor, so that one that is lost stops nobody
 SILENT = 1.0  # s, after which a range finder that has spoken is taken to see no floor
 
 
@@ -13,8 +12,7 @@ class EdgeWatch:
     """One vehicle's, by its range finders' sights of the floor."""
 
     def __init__(self, sights: Mapping[str, FloorSight]) -> None:
-        self._sights = sights
-        self._misses: dict[str, int] = {}
+        self._floor = FloorWatch(sights)
         self._heard: dict[str, float] = {}
         self._ahead = self._behind = False
 
@@ -22,10 +20,9 @@ class EdgeWatch:
         """Takes what has been measured until ``t`` [s]."""
         for reading in readings:
             frame = reading.frame_id.rpartition("/")[2]
-            if (sight := self._sights.get(frame)) is not None:
-                self._misses[frame] = self._misses.get(frame, 0) + 1 if sight.has_ended(reading.range) else 0
+            if self._floor.take(frame, reading.range):
                 self._heard[frame] = t
-        ended = [self._sights[f] for f, at in self._heard.items() if self._misses[f] >= TWICE or t - at > SILENT]
+        ended = [self._floor.sights[f] for f, at in self._heard.items() if self._floor.has_ended(f) or t - at > SILENT]
         self._ahead = any(sight.place[0] > 0.0 for sight in ended)
         self._behind = any(sight.place[0] <= 0.0 for sight in ended)
 

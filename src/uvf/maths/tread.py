@@ -42,7 +42,7 @@ def tread_forces(deflections: Floats, slips: Floats, loads: Floats, grip: Floats
         if used > 1.0:
             for k in range(2):
                 forces[i, k] /= np.sqrt(used)
-                deflections[i, k] = -forces[i, k] / (mass * rate * rate) if mass > 0.0 else 0.0
+                deflections[i, k] = -forces[i, k] / (mass * rate * rate)
     return forces
 
 

@@ -1,6 +1,6 @@
 """Range finders that look down at the floor: where each looks, and when there is no floor."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +9,7 @@ from uvf.maths.rotations import from_euler, rotate
 from uvf.models.vehicle.sensors import RangeFinder
 
 DOWN = 0.5  # downward share of a beam, from which on it looks at the floor
+TWICE = 2  # readings in a row without a floor, so that one that is lost stops nobody
 DROP = 0.03  # m by which a beam is longer where the floor has ended; it is more than a threshold and noise
 
 
@@ -32,3 +33,23 @@ def floor_sights(finders: Iterable[RangeFinder]) -> dict[str, FloorSight]:
         if -up >= DOWN and z > 0.0 and (length := z / -up) + DROP <= finder.range_max:
             found[finder.frame] = FloorSight((x + length * ahead, y + length * left), length)
     return found
+
+
+class FloorWatch:
+    """Which range finders, by their frames, see no floor."""
+
+    def __init__(self, sights: Mapping[str, FloorSight]) -> None:
+        self.sights = sights
+        self._misses: dict[str, int] = {}
+
+    def take(self, frame: str, measured: float) -> bool:
+        """Takes a measured range [m], 0 = no return; whether it is of a range finder that looks at the floor."""
+        sight = self.sights.get(frame)
+        if sight is None:
+            return False
+        self._misses[frame] = self._misses.get(frame, 0) + 1 if sight.has_ended(measured) else 0
+        return True
+
+    def has_ended(self, frame: str) -> bool:
+        """Whether the floor has ended where that one looks, by more than one reading."""
+        return self._misses.get(frame, 0) >= TWICE

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +15,13 @@ from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.mesh_parts import MeshPart, box, joined
 from uvf.models.shapes.solid import Solid, pose_at
-from uvf.models.world.cutaway import cut_open, is_roofed
+from uvf.models.world.cutaway import cut_height, cut_open
 from uvf.models.world.file import Wall, WorldFile
 from uvf.models.world.geometry import WALL, solids
 
 Floats = NDArray[np.float64]
 
 WALL_SHOWN = 0.9  # m: walls are cut at this height so that one looks into the rooms
-CUT = 1.4  # m, the same for everything under a roof
 FLOOR: Colour = (140, 150, 164)
 
 
@@ -35,7 +33,7 @@ def scenery(world: WorldFile) -> dict[str, Node]:
     walls = [(wall.colour, part) for wall in world.walls for part in _segments(wall)]
     nodes.update(_merged("/world/walls", walls))
     still = [s for s in solids(world) if s.name != WALL and s.path is None]
-    top = CUT if not world.terrain and is_roofed(still, world.floor) else inf
+    top = cut_height(world, still)
     things = [(s.colour, part) for s in still if len((part := _placed(s, top)).faces)]
     nodes.update(_merged("/world/things", things))
     nodes.update((f"{_frame(s)}/shape", merge([at_rest(s)], rgb(s.colour))) for s in moving(world))

@@ -10,10 +10,10 @@ from scipy.spatial import ConvexHull, QhullError
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.rotations import rotate
 from uvf.maths.scrubbing import scrubbing, shared_loads
-from uvf.maths.se3 import apply
 from uvf.models.checks.sensor_rules import sensor_faults, sensor_notes
 from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
+from uvf.models.urdf.inertia import whole
 from uvf.models.urdf.robot import Joint, UrdfModel
 from uvf.models.vehicle.file import GroundBody, VehicleFile
 from uvf.models.yaml_data import BadInput, FileLocation
@@ -39,6 +39,7 @@ class CheckedBody:
     def __init__(self, model: UrdfModel, ground: GroundBody) -> None:
         self.model, self.ground = model, ground
         self.poses = model.link_poses()
+        self.mass = whole(model, self.poses)
         sides = {"left": ground.drive.left_joints, "right": ground.drive.right_joints}
         found = {side: [model.joints[name] for name in names] for side, names in sides.items()}
         self.wheels = {side: [j for j in joints if j.child in self.poses and j.parent in self.poses] for side, joints in found.items()}
@@ -164,10 +165,9 @@ def _off_centre(body: CheckedBody, place: Floats, what: str) -> Iterator[str]:
 
 def _scrubbing_faults(body: CheckedBody, centres: Floats, ground: FileLocation) -> Iterator[str]:
     """How wheels that scrub make the vehicle turn, by where they stand and what they carry."""
-    com = _centre_of_mass(body)
-    if com is None:
+    if body.mass is None:
         return
-    found = scrubbing(centres[:, :2], shared_loads(centres[:, :2], com[:2]))
+    found = scrubbing(centres[:, :2], shared_loads(centres[:, :2], body.mass.com[:2]))
     yield from _off_centre(body, np.array(found.pivot), "with these masses and wheels it turns about a point")
     told = body.ground.drive.effective_track
     if told is not None and abs(told - found.track) > SAME * found.track:
@@ -184,9 +184,10 @@ def _outline_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:
 
 
 def _balance_faults(body: CheckedBody) -> Iterator[str]:
-    supports, com = _supports(body), _centre_of_mass(body)
-    if com is None or not supports:
+    supports = _supports(body)
+    if body.mass is None or not supports:
         return
+    com = body.mass.com
     margin = _margin(supports, com[:2])
     where = str(body.model.path)
     if margin is None:
@@ -199,8 +200,8 @@ def _balance_faults(body: CheckedBody) -> Iterator[str]:
 
 
 def _margin_notes(body: CheckedBody) -> Iterator[str]:
-    supports, com = _supports(body), _centre_of_mass(body)
-    margin = _margin(supports, com[:2]) if supports and com is not None else None
+    supports = _supports(body)
+    margin = _margin(supports, body.mass.com[:2]) if supports and body.mass is not None else None
     if margin is not None and 0 <= margin < LOW_MARGIN * body.ground.drive.track:
         yield f"the centre of mass is only {margin * 1000:.0f} mm inside of the supports: it may tip when it accelerates"
 
@@ -221,17 +222,6 @@ def _supports(body: CheckedBody) -> list[Floats]:
             corners = triangles(solid)[0]
             points += list(corners[corners[:, 2] <= corners[:, 2].min() + 1e-4][:, :2])
     return points
-
-
-def _centre_of_mass(body: CheckedBody) -> Floats | None:
-    """(3,) m in base_link, of all links."""
-    found = [(link.inertial, body.poses[name]) for name, link in body.model.links.items() if name in body.poses]
-    masses = [(inertial.mass, apply(pose, inertial.com[None])[0]) for inertial, pose in found if inertial is not None]
-    total = sum(mass for mass, _ in masses)
-    if total <= 0:
-        return None
-    com: Floats = sum((mass * point for mass, point in masses), np.zeros(3)) / total
-    return com
 
 
 def _margin(points: list[Floats], com: Floats) -> float | None:

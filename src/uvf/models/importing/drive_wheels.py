@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from uvf.maths.rotations import from_matrix
 from uvf.maths.scrubbing import Scrubbing, scrubbing, shared_loads
-from uvf.maths.se3 import Transform, apply, inverse
+from uvf.maths.se3 import Transform, inverse
 from uvf.models.importing.robot import Foreign
 from uvf.models.importing.wheel_guess import WheelGuess, may_turn, shapes_below, wheel_on
 from uvf.models.shapes.mesh import reach
+from uvf.models.urdf.inertia import whole
 from uvf.models.urdf.robot import Joint, UrdfModel
 from uvf.models.yaml_data import BadInput
 
@@ -177,25 +178,14 @@ def _turning(driven: tuple[WheelGuess, ...], frame: tuple[Floats, Floats], forei
     """How a vehicle turns with several wheels a side; frame: its middle (3,) [m] and axes (3, 3), columns forward, left, up."""
     middle, axes = frame
     places = np.array([(wheel.centre - middle) @ axes for wheel in driven])[:, :2]
-    com = _centre_of_mass(foreign.model)
-    loads = shared_loads(places, ((com - middle) @ axes)[:2]) if com is not None else np.ones(len(places))
+    mass = whole(foreign.model, foreign.model.link_poses())
+    loads = shared_loads(places, ((mass.com - middle) @ axes)[:2]) if mass is not None else np.ones(len(places))
     found = scrubbing(places, loads)
     foreign.notes.add(
         f"skid steer: it turns as two wheels do that are {found.track:.3g} m apart, about ({found.pivot[0]:.3f}, {found.pivot[1]:.3f}) m "
         "from the middle of the wheels, where base_link is put"
     )
     return found
-
-
-def _centre_of_mass(model: UrdfModel) -> Floats | None:
-    """(3,) m in the root's frame; None where the file states no masses."""
-    poses = model.link_poses()
-    weighed = [(link.inertial, poses[name]) for name, link in model.links.items() if link.inertial is not None and name in poses]
-    total = sum(inertial.mass for inertial, _ in weighed)
-    if total <= 0.0:
-        return None
-    com: Floats = np.sum([inertial.mass * apply(pose, inertial.com[None])[0] for inertial, pose in weighed], axis=0) / total
-    return com
 
 
 def _up(foreign: Foreign, lateral: Floats, wheel: WheelGuess) -> Floats:

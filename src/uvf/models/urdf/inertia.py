@@ -1,13 +1,13 @@
 """Mass and inertia of several links as one body."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.rotations import matrix
 from uvf.maths.se3 import Transform, apply
-from uvf.models.urdf.robot import Inertial
+from uvf.models.urdf.robot import Inertial, UrdfModel
 
 Floats = NDArray[np.float64]
 
@@ -29,3 +29,9 @@ def joined(parts: Sequence[Inertial]) -> Inertial | None:
         arm = part.com - com
         inertia += part.inertia + part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
     return Inertial(mass, com, inertia)
+
+
+def whole(model: UrdfModel, poses: Mapping[str, Transform]) -> Inertial | None:
+    """All links of these poses as one inertial; None where the model states no mass."""
+    links = [link for name, link in model.links.items() if name in poses]
+    return joined([moved(link.inertial, poses[link.name]) for link in links if link.inertial is not None])

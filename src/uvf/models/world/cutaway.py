@@ -1,6 +1,7 @@
 """Buildings cut open at a height, so that one looks into their rooms."""
 
 from collections.abc import Iterable
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -9,12 +10,19 @@ from numpy.typing import NDArray
 
 from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.solid import Solid
+from uvf.models.world.file import WorldFile
 
 Floats = NDArray[np.float64]
 Faces = NDArray[Any]
 
+CUT = 1.4  # m, where buildings are cut open
 OVERHEAD = 1.8  # m, from which on what covers the floor is a roof
 ROOFED = 0.25  # of the floor that a roof covers at least
+
+
+def cut_height(world: WorldFile, solids: Iterable[Solid]) -> float:
+    """Height [m] above which nothing is shown of a world with these solids; inf but under a roof on level ground."""
+    return CUT if world.terrain is None and is_roofed(solids, world.floor) else inf
 
 
 def is_roofed(solids: Iterable[Solid], floor: tuple[float, float, float, float]) -> bool:
