@@ -20,7 +20,7 @@ from uvf.models.importing.jsbsim import jsbsim_model
 from uvf.models.importing.meshes import with_own_meshes
 from uvf.models.importing.rebuilt import rebuilt, wheel_names
 from uvf.models.importing.robot import Foreign, StatedLimits
-from uvf.models.importing.sdf_robot import read_foreign_sdf
+from uvf.models.importing.sdf.robot import read_foreign_sdf
 from uvf.models.importing.sensors import sensors_section
 from uvf.models.importing.urdf import read_foreign_urdf
 from uvf.models.importing.wheel_guess import WheelGuess

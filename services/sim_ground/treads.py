@@ -9,7 +9,7 @@ from services.sim_ground.body import LinkMotion, Three
 from services.sim_ground.touching import EngineContact
 from uvf.maths.kinematics import spin_velocity
 from uvf.maths.rotations import rotate
-from uvf.maths.tread import tread_forces, wheel_frame
+from uvf.maths.wheels.tread import tread_forces, wheel_frame
 
 Floats = NDArray[np.float64]
 Push = tuple[int, Floats, Three]

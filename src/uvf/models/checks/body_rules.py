@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.rotations import rotate
-from uvf.maths.scrubbing import scrubbing, shared_loads
+from uvf.maths.wheels.scrubbing import scrubbing, shared_loads
 from uvf.models.checks.sensor_rules import sensor_faults, sensor_notes
 from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid

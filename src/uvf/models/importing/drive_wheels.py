@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.rotations import from_matrix
-from uvf.maths.scrubbing import Scrubbing, scrubbing, shared_loads
 from uvf.maths.se3 import Transform, inverse
+from uvf.maths.wheels.scrubbing import Scrubbing, scrubbing, shared_loads
 from uvf.models.importing.robot import Foreign
 from uvf.models.importing.wheel_guess import WheelGuess, may_turn, shapes_below, wheel_on
 from uvf.models.shapes.mesh import reach

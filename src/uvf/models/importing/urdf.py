@@ -5,7 +5,7 @@ from typing import Any
 
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.robot import Foreign, ForeignSensor
-from uvf.models.importing.sdf_poses import FILE, transform
+from uvf.models.importing.sdf.poses import FILE, transform
 from uvf.models.urdf.reader import read_model
 from uvf.models.urdf.source import XacroValues, read_xml
 from uvf.models.yaml_data import BadInput

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from uvf.models.importing.map_image import map_world
 from uvf.models.importing.notes import Notes
-from uvf.models.importing.sdf_world import SdfImport
+from uvf.models.importing.sdf.world import SdfImport
 from uvf.models.world.file import WorldFile, load_world
 from uvf.models.world.writer import write_world
 from uvf.models.yaml_data import BadInput

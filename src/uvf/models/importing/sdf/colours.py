@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from uvf.models.importing.sdf_poses import numbers
+from uvf.models.importing.sdf.poses import numbers
 from uvf.models.world.file import Colour
 from uvf.models.yaml_data import BadInput
 

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from uvf.maths.se3 import IDENTITY, Transform, compose
 from uvf.models.importing.mesh_files import MeshStore
 from uvf.models.importing.notes import Notes
-from uvf.models.importing.sdf_colours import visual_colour
-from uvf.models.importing.sdf_ground import SdfGround
-from uvf.models.importing.sdf_models import Models, read_sdf
-from uvf.models.importing.sdf_poses import Scope, numbers, relative_to, transform
-from uvf.models.importing.sdf_shapes import Named, Shapes, Thing, is_level
-from uvf.models.importing.sdf_state import NOTHING_SAVED, ModelState, deleted, saved_states
+from uvf.models.importing.sdf.colours import visual_colour
+from uvf.models.importing.sdf.ground import SdfGround
+from uvf.models.importing.sdf.models import Models, read_sdf
+from uvf.models.importing.sdf.poses import Scope, numbers, relative_to, transform
+from uvf.models.importing.sdf.shapes import Named, Shapes, Thing, is_level
+from uvf.models.importing.sdf.state import NOTHING_SAVED, ModelState, deleted, saved_states
 from uvf.models.world.file import Colour, Origin, WorldFile
 from uvf.models.world.wind import Wind
 from uvf.models.yaml_data import BadInput

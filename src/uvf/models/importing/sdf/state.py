@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se3 import Transform
-from uvf.models.importing.sdf_poses import numbers, transform
+from uvf.models.importing.sdf.poses import numbers, transform
 
 Floats = NDArray[np.float64]
 

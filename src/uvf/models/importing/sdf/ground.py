@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.models.importing.notes import Notes
-from uvf.models.importing.sdf_shapes import Thing
+from uvf.models.importing.sdf.shapes import Thing
 from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.scene import still
 from uvf.models.shapes.solid import Solid

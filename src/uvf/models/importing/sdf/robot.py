@@ -11,9 +11,9 @@ from uvf.maths.rotations import matrix, rotate
 from uvf.maths.se3 import IDENTITY, Transform, compose, inverse
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.robot import UNKNOWN, Foreign, ForeignSensor, drive_of
-from uvf.models.importing.sdf_colours import visual_colour
-from uvf.models.importing.sdf_models import Models, read_sdf
-from uvf.models.importing.sdf_poses import Scope, numbers, place_of, relative_to, transform
+from uvf.models.importing.sdf.colours import visual_colour
+from uvf.models.importing.sdf.models import Models, read_sdf
+from uvf.models.importing.sdf.poses import Scope, numbers, place_of, relative_to, transform
 from uvf.models.shapes.solid import Colour, Solid
 from uvf.models.urdf.robot import Inertial, Joint, Link, UrdfModel
 from uvf.models.yaml_data import BadInput

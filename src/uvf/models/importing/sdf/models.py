@@ -11,7 +11,7 @@ from urllib.parse import unquote
 from lxml import etree
 
 from uvf.models.importing.notes import Notes
-from uvf.models.importing.sdf_poses import FILE, place_of
+from uvf.models.importing.sdf.poses import FILE, place_of
 from uvf.models.yaml_data import BadInput
 
 PATHS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH")

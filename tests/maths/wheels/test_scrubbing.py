@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from uvf.maths.scrubbing import scrubbing, shared_loads
+from uvf.maths.wheels.scrubbing import scrubbing, shared_loads
 
 
 def wheels(track, *along):

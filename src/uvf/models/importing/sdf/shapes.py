@@ -13,7 +13,7 @@ from uvf.maths.se3 import IDENTITY, Transform, compose
 from uvf.models.importing.mesh_files import MeshStore, RequestedMesh
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.polygons import extruded
-from uvf.models.importing.sdf_poses import numbers, place_of
+from uvf.models.importing.sdf.poses import numbers, place_of
 from uvf.models.world.file import Box, Colour, Cylinder, Mesh, Sphere
 from uvf.models.yaml_data import BadInput
 

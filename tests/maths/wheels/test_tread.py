@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from uvf.maths.tread import tread_forces, wheel_frame
+from uvf.maths.wheels.tread import tread_forces, wheel_frame
 
 LOAD, DT = np.array((50.0,)), 0.005
 GRIP = np.array(((0.8, 0.8),))
