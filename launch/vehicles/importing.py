@@ -144,8 +144,10 @@ def _ground(name: str, wheels: DriveWheels, model: UrdfModel, limits: StatedLimi
 def _drive(wheels: DriveWheels) -> dict[str, Any]:
     joints = {side: [f"{name}_joint" for name in wheel_names(side, len(wheels.left))] for side in ("left", "right")}
     sizes = {"wheel_radius": round(wheels.radius, 6), "track": round(wheels.track, 6)}
-    if len(wheels.left) == 1:
+    if wheels.kind == "differential":
         return {side: names[0] for side, names in joints.items()} | sizes
+    if wheels.kind == "mecanum":
+        return {"kind": "mecanum", **joints, **sizes, "wheelbase": round(wheels.wheelbase, 6)}
     return {"kind": "skid_steer", **joints, **sizes, "effective_track": round(wheels.turning_track, 4)}
 
 

@@ -46,8 +46,10 @@ def vehicle_figures(file: VehicleFile, model: UrdfModel | None) -> Table:
 
 def _ground_rows(ground: GroundBody) -> Iterator[tuple[str, str]]:
     drive = ground.drive
-    turning = f", turns as with {drive.effective_track:g} m" if drive.effective_track is not None else ""
-    yield "drive", f"{drive.kind}, {len(drive.joints)} wheels of radius {drive.wheel_radius:g} m, track {drive.track:g} m{turning}"
+    turning = f", turns as with {drive.kinematics.track:g} m" if drive.scrubs else ""
+    sideways = ", goes sideways" if drive.kinematics.goes_sideways else ""
+    sizes = f"{len(drive.joints)} wheels of radius {drive.wheel_radius:g} m, {drive.width:g} m apart"
+    yield "drive", f"{drive.kind}, {sizes}{turning}{sideways}"
     yield "body", f"within {ground.radius:g} m of base_link"
     yield (
         "limits",

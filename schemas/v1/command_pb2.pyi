@@ -9,24 +9,28 @@ from typing import ClassVar as _ClassVar, Iterable as _Iterable, Mapping as _Map
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class DriveCommand(_message.Message):
-    __slots__ = ("timestamp", "linear", "angular")
+    __slots__ = ("timestamp", "linear", "angular", "lateral")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     LINEAR_FIELD_NUMBER: _ClassVar[int]
     ANGULAR_FIELD_NUMBER: _ClassVar[int]
+    LATERAL_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     linear: float
     angular: float
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., linear: _Optional[float] = ..., angular: _Optional[float] = ...) -> None: ...
+    lateral: float
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., linear: _Optional[float] = ..., angular: _Optional[float] = ..., lateral: _Optional[float] = ...) -> None: ...
 
 class WheelCommand(_message.Message):
-    __slots__ = ("timestamp", "left", "right")
+    __slots__ = ("timestamp", "left", "right", "each")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     LEFT_FIELD_NUMBER: _ClassVar[int]
     RIGHT_FIELD_NUMBER: _ClassVar[int]
+    EACH_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     left: float
     right: float
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., left: _Optional[float] = ..., right: _Optional[float] = ...) -> None: ...
+    each: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., left: _Optional[float] = ..., right: _Optional[float] = ..., each: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class SurfaceCommand(_message.Message):
     __slots__ = ("timestamp", "aileron", "elevator", "rudder", "throttle", "flap", "brake")

@@ -26,7 +26,7 @@ from foxglove_schemas_protobuf import Vector3_pb2 as foxglove_dot_Vector3__pb2
 from google.protobuf import timestamp_pb2 as google_dot_protobuf_dot_timestamp__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x13uvf/v1/sensor.proto\x12\x06uvf.v1\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"\xc9\x01\n\x03Imu\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x10\n\x08\x66rame_id\x18\x02 \x01(\t\x12+\n\x10\x61ngular_velocity\x18\x03 \x01(\x0b\x32\x11.foxglove.Vector3\x12)\n\x0especific_force\x18\x04 \x01(\x0b\x32\x11.foxglove.Vector3\x12)\n\x0emagnetic_field\x18\x05 \x01(\x0b\x32\x11.foxglove.Vector3\"r\n\nWheelTicks\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0c\n\x04left\x18\x02 \x01(\x03\x12\r\n\x05right\x18\x03 \x01(\x03\x12\x18\n\x10radians_per_tick\x18\x04 \x01(\x01\"\xb5\x02\n\x04Gnss\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x1d\n\x03\x66ix\x18\x02 \x01(\x0e\x32\x10.uvf.v1.Gnss.Fix\x12\x10\n\x08latitude\x18\x03 \x01(\x01\x12\x11\n\tlongitude\x18\x04 \x01(\x01\x12\x10\n\x08\x61ltitude\x18\x05 \x01(\x01\x12\'\n\x0cvelocity_enu\x18\x06 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x1b\n\x13horizontal_accuracy\x18\x07 \x01(\x01\x12\x19\n\x11vertical_accuracy\x18\x08 \x01(\x01\x12\x16\n\x0espeed_accuracy\x18\t \x01(\x01\x12\x12\n\nsatellites\x18\n \x01(\r\"\x1b\n\x03\x46ix\x12\x08\n\x04NONE\x10\x00\x12\n\n\x06\x46IX_3D\x10\x03\"\x85\x01\n\x07\x41irData\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x17\n\x0fstatic_pressure\x18\x02 \x01(\x01\x12\x1d\n\x15\x64ifferential_pressure\x18\x03 \x01(\x01\x12\x13\n\x0btemperature\x18\x04 \x01(\x01\"j\n\x07\x43ontact\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x10\n\x08touching\x18\x02 \x01(\x08\x12\r\n\x05other\x18\x03 \x01(\t\x12\x0f\n\x07sectors\x18\x04 \x03(\t\"\x94\x01\n\x05Range\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x10\n\x08\x66rame_id\x18\x02 \x01(\t\x12\r\n\x05range\x18\x03 \x01(\x01\x12\x15\n\rfield_of_view\x18\x04 \x01(\x01\x12\x11\n\trange_min\x18\x05 \x01(\x01\x12\x11\n\trange_max\x18\x06 \x01(\x01\"m\n\x07\x42\x61ttery\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07voltage\x18\x02 \x01(\x01\x12\x0f\n\x07\x63urrent\x18\x03 \x01(\x01\x12\x11\n\tremaining\x18\x04 \x01(\x01\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x13uvf/v1/sensor.proto\x12\x06uvf.v1\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"\xc9\x01\n\x03Imu\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x10\n\x08\x66rame_id\x18\x02 \x01(\t\x12+\n\x10\x61ngular_velocity\x18\x03 \x01(\x0b\x32\x11.foxglove.Vector3\x12)\n\x0especific_force\x18\x04 \x01(\x0b\x32\x11.foxglove.Vector3\x12)\n\x0emagnetic_field\x18\x05 \x01(\x0b\x32\x11.foxglove.Vector3\"\x80\x01\n\nWheelTicks\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0c\n\x04left\x18\x02 \x01(\x03\x12\r\n\x05right\x18\x03 \x01(\x03\x12\x18\n\x10radians_per_tick\x18\x04 \x01(\x01\x12\x0c\n\x04\x65\x61\x63h\x18\x05 \x03(\x03\"\xb5\x02\n\x04Gnss\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x1d\n\x03\x66ix\x18\x02 \x01(\x0e\x32\x10.uvf.v1.Gnss.Fix\x12\x10\n\x08latitude\x18\x03 \x01(\x01\x12\x11\n\tlongitude\x18\x04 \x01(\x01\x12\x10\n\x08\x61ltitude\x18\x05 \x01(\x01\x12\'\n\x0cvelocity_enu\x18\x06 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x1b\n\x13horizontal_accuracy\x18\x07 \x01(\x01\x12\x19\n\x11vertical_accuracy\x18\x08 \x01(\x01\x12\x16\n\x0espeed_accuracy\x18\t \x01(\x01\x12\x12\n\nsatellites\x18\n \x01(\r\"\x1b\n\x03\x46ix\x12\x08\n\x04NONE\x10\x00\x12\n\n\x06\x46IX_3D\x10\x03\"\x85\x01\n\x07\x41irData\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x17\n\x0fstatic_pressure\x18\x02 \x01(\x01\x12\x1d\n\x15\x64ifferential_pressure\x18\x03 \x01(\x01\x12\x13\n\x0btemperature\x18\x04 \x01(\x01\"j\n\x07\x43ontact\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x10\n\x08touching\x18\x02 \x01(\x08\x12\r\n\x05other\x18\x03 \x01(\t\x12\x0f\n\x07sectors\x18\x04 \x03(\t\"\x94\x01\n\x05Range\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x10\n\x08\x66rame_id\x18\x02 \x01(\t\x12\r\n\x05range\x18\x03 \x01(\x01\x12\x15\n\rfield_of_view\x18\x04 \x01(\x01\x12\x11\n\trange_min\x18\x05 \x01(\x01\x12\x11\n\trange_max\x18\x06 \x01(\x01\"m\n\x07\x42\x61ttery\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07voltage\x18\x02 \x01(\x01\x12\x0f\n\x07\x63urrent\x18\x03 \x01(\x01\x12\x11\n\tremaining\x18\x04 \x01(\x01\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -35,18 +35,18 @@ if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
   _globals['_IMU']._serialized_start=89
   _globals['_IMU']._serialized_end=290
-  _globals['_WHEELTICKS']._serialized_start=292
-  _globals['_WHEELTICKS']._serialized_end=406
-  _globals['_GNSS']._serialized_start=409
-  _globals['_GNSS']._serialized_end=718
-  _globals['_GNSS_FIX']._serialized_start=691
-  _globals['_GNSS_FIX']._serialized_end=718
-  _globals['_AIRDATA']._serialized_start=721
-  _globals['_AIRDATA']._serialized_end=854
-  _globals['_CONTACT']._serialized_start=856
-  _globals['_CONTACT']._serialized_end=962
-  _globals['_RANGE']._serialized_start=965
-  _globals['_RANGE']._serialized_end=1113
-  _globals['_BATTERY']._serialized_start=1115
-  _globals['_BATTERY']._serialized_end=1224
+  _globals['_WHEELTICKS']._serialized_start=293
+  _globals['_WHEELTICKS']._serialized_end=421
+  _globals['_GNSS']._serialized_start=424
+  _globals['_GNSS']._serialized_end=733
+  _globals['_GNSS_FIX']._serialized_start=706
+  _globals['_GNSS_FIX']._serialized_end=733
+  _globals['_AIRDATA']._serialized_start=736
+  _globals['_AIRDATA']._serialized_end=869
+  _globals['_CONTACT']._serialized_start=871
+  _globals['_CONTACT']._serialized_end=977
+  _globals['_RANGE']._serialized_start=980
+  _globals['_RANGE']._serialized_end=1128
+  _globals['_BATTERY']._serialized_start=1130
+  _globals['_BATTERY']._serialized_end=1239
 # @@protoc_insertion_point(module_scope)

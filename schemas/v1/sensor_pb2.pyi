@@ -23,16 +23,18 @@ class Imu(_message.Message):
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., frame_id: _Optional[str] = ..., angular_velocity: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., specific_force: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., magnetic_field: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ...) -> None: ...
 
 class WheelTicks(_message.Message):
-    __slots__ = ("timestamp", "left", "right", "radians_per_tick")
+    __slots__ = ("timestamp", "left", "right", "radians_per_tick", "each")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     LEFT_FIELD_NUMBER: _ClassVar[int]
     RIGHT_FIELD_NUMBER: _ClassVar[int]
     RADIANS_PER_TICK_FIELD_NUMBER: _ClassVar[int]
+    EACH_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     left: int
     right: int
     radians_per_tick: float
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., left: _Optional[int] = ..., right: _Optional[int] = ..., radians_per_tick: _Optional[float] = ...) -> None: ...
+    each: _containers.RepeatedScalarFieldContainer[int]
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., left: _Optional[int] = ..., right: _Optional[int] = ..., radians_per_tick: _Optional[float] = ..., each: _Optional[_Iterable[int]] = ...) -> None: ...
 
 class Gnss(_message.Message):
     __slots__ = ("timestamp", "fix", "latitude", "longitude", "altitude", "velocity_enu", "horizontal_accuracy", "vertical_accuracy", "speed_accuracy", "satellites")

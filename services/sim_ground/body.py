@@ -34,7 +34,7 @@ class BodyState(NamedTuple):
     """Motion of base_link: the point on the floor under the axle's middle.
 
     position: (3,) m, world; velocity: (3,) m/s, world; world_from_body: wxyz; angular_velocity: (3,) rad/s, body (FLU);
-    wheel_angles: of each driven wheel, the left side first [rad] since the start, unwrapped; wheel_speeds likewise [rad/s].
+    wheel_angles: of each driven wheel, as its file has them [rad] since the start, unwrapped; wheel_speeds likewise [rad/s].
     """
 
     position: Floats

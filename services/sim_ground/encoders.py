@@ -12,11 +12,10 @@ def radians_per_tick(encoders: Encoders) -> float:
     return 2 * np.pi / encoders.ticks_per_turn
 
 
-def ticks(encoders: Encoders, angles: Sequence[float]) -> tuple[int, int]:
-    """Counts of the left and the right side with the wheels, the left ones first, at these angles [rad] since the start.
+def ticks(encoders: Encoders, angles: Sequence[float], channels: Sequence[int]) -> list[int]:
+    """Counts of each channel with the wheels at these angles [rad] since the start; channels: of each wheel, which it is part of.
 
     An edge counts when it is passed; of several wheels the mean angle counts.
     """
-    per_tick, half = radians_per_tick(encoders), len(angles) // 2
-    left, right = (int(np.floor(sum(side) / half / per_tick)) for side in (angles[:half], angles[half:]))
-    return left, right
+    of = [[angle for angle, k in zip(angles, channels, strict=True) if k == channel] for channel in range(max(channels) + 1)]
+    return [int(np.floor(sum(some) / len(some) / radians_per_tick(encoders))) for some in of]

@@ -1,12 +1,15 @@
 """What the physics of the ground vehicles keeps of a vehicle, and of a state that can be gone back to."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
 from services.sim_ground.motor import WheelMotor
 from services.sim_ground.treads import Treads
+from uvf.models.vehicle.drive import DriveFile
 
 Floats = NDArray[np.float64]
 
@@ -16,8 +19,9 @@ class LoadedVehicle:
     """A vehicle inside the engine, whose own frame is the centre of mass: position (3,) m and orientation wxyz in base_link."""
 
     index: int
+    drive: DriveFile
     wheels: tuple[int, ...]
-    """Joints of the driven wheels, those of the left side first."""
+    """Joints of the driven wheels, in the order of the drive."""
     motors: tuple[WheelMotor, ...]
     com_in_base: tuple[Floats, Floats]
     friction: float
@@ -31,8 +35,13 @@ class LoadedVehicle:
 
     def by_side(self, sides: tuple[float, float]) -> list[float]:
         """What holds for the left and the right side, wheel by wheel."""
-        half = len(self.wheels) // 2
-        return [sides[0]] * half + [sides[1]] * half
+        return [sides[0] if is_left else sides[1] for is_left in self.drive.on_left]
+
+    def by_wheel(self, speeds: Sequence[float]) -> list[float]:
+        """Speeds of the drive's channels [rad/s] wheel by wheel; 0 where there are not as many as it has, or one is no number."""
+        channels = self.drive.channels
+        are_right = len(speeds) == max(channels) + 1 and all(map(isfinite, speeds))
+        return [speeds[channel] if are_right else 0.0 for channel in channels]
 
 
 @dataclass(frozen=True)

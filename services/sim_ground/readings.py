@@ -11,14 +11,14 @@ from services.sim_ground.encoders import radians_per_tick, ticks
 from uvf.models.vehicle.file import GroundBody
 from uvf.models.vehicle.sensors import Bumper, Encoders
 from uvf.runtime.messages.convert import quaternion, stamp, vector
+from uvf.runtime.messages.wheels import wheel_ticks
 
 Floats = NDArray[np.float64]
 
 
-def wheels_message(t: float, encoders: Encoders, body: BodyState) -> WheelTicks:
+def wheels_message(t: float, encoders: Encoders, channels: Sequence[int], body: BodyState) -> WheelTicks:
     """Encoder ticks as a message stamped ``t`` [s]."""
-    left, right = ticks(encoders, body.wheel_angles)
-    return WheelTicks(timestamp=stamp(t), left=left, right=right, radians_per_tick=radians_per_tick(encoders))
+    return wheel_ticks(t, ticks(encoders, body.wheel_angles, channels), radians_per_tick(encoders))
 
 
 def contact_message(t: float, bumpers: Sequence[Bumper], touches: Sequence[Touch]) -> Contact:

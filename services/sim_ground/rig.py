@@ -173,7 +173,7 @@ class Rig:
         return partial(_read_lidar, self._frame(lidar.frame), lidar, model)
 
     def _encoders(self, encoders: Encoders) -> Read:
-        return partial(_read_encoders, encoders)
+        return partial(_read_encoders, encoders, self.ground.drive.channels)
 
     def _gnss(self, gnss: GnssSensor) -> Read:
         origin = self._site.world.origin
@@ -203,8 +203,8 @@ def _read_lidar(frame: str, lidar: Lidar, model: LidarModel, t: float, moment: M
     return scan_message(t, frame, lidar, model.scan(moment.body, moment.others()))
 
 
-def _read_encoders(encoders: Encoders, t: float, moment: Moment) -> Message:
-    return readings.wheels_message(t, encoders, moment.body)
+def _read_encoders(encoders: Encoders, channels: Sequence[int], t: float, moment: Moment) -> Message:
+    return readings.wheels_message(t, encoders, channels, moment.body)
 
 
 def _read_gnss(gnss: GnssSensor, receiver: Receiver, t: float, moment: Moment) -> Message:

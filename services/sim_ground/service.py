@@ -1,6 +1,6 @@
 """The ground vehicles' simulator as a service: wheel commands in, what the sensors say out."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cache, partial
 from typing import Protocol
 
@@ -28,12 +28,12 @@ from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.guest import Course, courses
 from services.sim_ground.rig import STEP_HZ, Moment
 from services.sim_ground.stage import GroundStage, Stageable
-from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.raycast import MovingBody
 from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, optional, replies, request, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.readings.faults import Faults
 from uvf.runtime.messages.readings.sensors import later
+from uvf.runtime.messages.wheels import speeds_of
 from uvf.sensors.sampling import Due
 from uvf.sensors.surroundings import Surroundings, Whereabouts
 
@@ -44,7 +44,7 @@ class GroundWorld(Stageable, Protocol):
     rate: float
     """Physics steps a second."""
 
-    def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float, since: float) -> None:
+    def advance(self, wheels: Mapping[str, Sequence[float]], duration: float, since: float) -> None:
         """Moves the world from simulation time ``since`` [s] by ``duration`` [s] with these wheel speed commands [rad/s]."""
         ...
 
@@ -145,7 +145,7 @@ class SimGround(Service):
         self._world.guide(self._guests)
         for name in self._stage.rigs:
             self._world.set_grip(name, self._faults.grip(t, name))
-        self._advance(t, {name: WheelSpeeds(c.left, c.right) for name, c in now.commands.items() if not self._is_flat(name)})
+        self._advance(t, {name: speeds_of(c) for name, c in now.commands.items() if not self._is_flat(name)})
         out, n, stage = self._read(t), round(t * self.hz), self._stage
         flying = [o.name for o in now.flying.objects] if now.flying else []
         out.spawn = [stage.spawn(r, flying) for r in now.spawn]
@@ -186,7 +186,7 @@ class SimGround(Service):
         """s; the clock, unless a state was restored: then that of the state and what has passed since."""
         return (round(t * self.hz) - self._stage.late) / self.hz if self._stage.late else t
 
-    def _advance(self, t: float, wheels: Mapping[str, WheelSpeeds]) -> None:
+    def _advance(self, t: float, wheels: Mapping[str, Sequence[float]]) -> None:
         """To ``t`` [s], looking at those who read faster than this service steps after each step of the physics."""
         quick = [name for name, rig in self._stage.rigs.items() if rig.is_quick]
         parts = round(self._world.rate / self.hz) if quick else 1

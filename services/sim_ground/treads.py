@@ -1,6 +1,7 @@
-"""The treads of driven wheels that scrub, with friction of their own: the engine's is not for them."""
+"""The treads of driven wheels that scrub or have rollers, with friction of their own: the engine's is not for them."""
 
 from collections.abc import Sequence
+from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +18,14 @@ Push = tuple[int, Floats, Three]
 
 
 class Treads:
-    """Of a vehicle's driven wheels by their joints; axles (n, 3): in the wheels' axes of inertia; grip: friction along and across [-]."""
+    """Of a vehicle's driven wheels by their joints; axles (n, 3): in the wheels' axes of inertia.
 
-    def __init__(self, wheels: Sequence[int], axles: Floats, grip: tuple[float, float]) -> None:
+    grip: friction along and across [-]; along: the direction in which the wheel rolls, or turned from there by ``holds_at`` [rad].
+    """
+
+    def __init__(self, wheels: Sequence[int], axles: Floats, grip: tuple[float, float], holds_at: Sequence[float] = ()) -> None:
         self._wheels, self._axles, self._grip = tuple(wheels), axles, grip
+        self._turned = np.array([((cos(a), sin(a)), (-sin(a), cos(a))) for a in holds_at or (0.0,) * len(wheels)])
         self.deflections = np.zeros((len(wheels), 2))
         """Of the treads, along and across [m]: with the engine's state all that the next step depends on."""
 
@@ -35,7 +40,7 @@ class Treads:
         for i, (wheel, link) in enumerate(zip(self._wheels, links, strict=True)):
             if (mark := touching.get(wheel)) is None:
                 continue
-            frames[i] = wheel_frame(rotate(link.orientation, self._axles[i]), np.array(mark.normal))
+            frames[i] = self._turned[i] @ wheel_frame(rotate(link.orientation, self._axles[i]), np.array(mark.normal))
             slips[i] = frames[i] @ (link.velocity + spin_velocity(link.angular_velocity, np.array(mark.place) - link.position))
             loads[i] = mark.load
         forces = tread_forces(self.deflections, slips, loads, np.multiply.outer(np.array(shares), np.array(self._grip)), dt)

@@ -19,16 +19,15 @@ from services.sim_ground.motor import WheelMotor
 from services.sim_ground.touching import FLOOR, SOLE, Bodies
 from services.sim_ground.treads import Treads
 from uvf.maths.geodesy import GRAVITY
-from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.rotations import IDENTITY, from_euler, multiply, rotate
 from uvf.models.shapes.solid import Keyframes, Solid, pose_at
 from uvf.models.vehicle.file import Friction, GroundBody
 
 Floats = NDArray[np.float64]
-STOPPED = WheelSpeeds(0.0, 0.0)
 AWAY = np.array((0.0, 0.0, 1e4))  # m
 DEEP = 2e-3  # m, from which on one body is inside another
 FALLEN = 0.5  # cosine of the tilt from which on a vehicle no longer stands on its wheels
+FREE = 0.0  # friction across rollers
 SAG = 1e-3  # m, by which tyres of several wheels a side give under the vehicle's weight
 SETTLES = 0.7  # damping ratio of that
 STILL = (0.0, 0.0, 0.0)
@@ -83,7 +82,7 @@ class BulletWorld:
         soles = self._soles(index, vehicle, com_in_base)
         self._place(index, vehicle, com_in_base)
         motors = tuple(WheelMotor(vehicle.body.motor, 1 / self.rate) for _ in wheels)
-        return LoadedVehicle(index, wheels, motors, com_in_base, max(friction.mu, friction.mu2), treads, soles)
+        return LoadedVehicle(index, vehicle.body.drive, wheels, motors, com_in_base, max(friction.mu, friction.mu2), treads, soles)
 
     def _soles(self, index: int, vehicle: BodyPlacement, com_in_base: tuple[Floats, Floats]) -> frozenset[int]:
         """The links with which it stands on a level floor."""
@@ -104,14 +103,18 @@ class BulletWorld:
 
         Tyres of several wheels a side give, so that all of them carry: a rigid body on four points stands on any three.
         """
-        if body.drive.kind == "differential":
+        drive = body.drive
+        if not drive.scrubs and drive.holds_at is None:
             return None
         mass = self.engine.mass(index) / len(wheels)
         stiffness = mass * GRAVITY / SAG
         damping = 2.0 * SETTLES * float(np.sqrt(stiffness * mass))
         for wheel in wheels:
             self.engine.set_dynamics(index, wheel, lateralFriction=0.0, contactStiffness=stiffness, contactDamping=damping)
-        return Treads(wheels, np.array([self.engine.axle(index, w) for w in wheels]), (body.friction.mu, body.friction.mu2))
+        axles = np.array([self.engine.axle(index, w) for w in wheels])
+        if drive.holds_at is None:
+            return Treads(wheels, axles, (body.friction.mu, body.friction.mu2))
+        return Treads(wheels, axles, (body.friction.mu, FREE), drive.holds_at)
 
     def _place(self, index: int, vehicle: BodyPlacement, com_in_base: tuple[Floats, Floats]) -> None:
         x, y, yaw = vehicle.start
@@ -128,15 +131,12 @@ class BulletWorld:
                 if loaded.treads is None:
                     self.engine.set_dynamics(loaded.index, wheel, lateralFriction=share * loaded.friction)
 
-    def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float, since: float = 0.0) -> None:
+    def advance(self, wheels: Mapping[str, Sequence[float]], duration: float, since: float = 0.0) -> None:
         """Moves the world by ``duration`` [s]; a vehicle without a finite command brakes its wheels to a stop.
 
-        since: simulation time [s] at the beginning, for scripted solids. wheels: speed commands [rad/s].
+        since: simulation time [s] at the beginning, for scripted solids. wheels: speed commands [rad/s], one for each channel of a drive.
         """
-        wanted = {name: wheels.get(name, STOPPED) for name in self._vehicles}
-        for name, speeds in wanted.items():
-            if not np.isfinite(speeds).all():
-                wanted[name] = STOPPED
+        wanted = {name: vehicle.by_wheel(wheels.get(name, ())) for name, vehicle in self._vehicles.items()}
         for n in range(round(duration * self.rate)):
             self._move_scripted(since + n / self.rate)
             self._move_guests(since + n / self.rate)
@@ -150,10 +150,10 @@ class BulletWorld:
         """Energy [J] that a vehicle's motors have drawn since the last call."""
         return self._drawn.pop(vehicle, 0.0)
 
-    def _drive(self, vehicle: LoadedVehicle, wanted: WheelSpeeds) -> float:
-        """J drawn in the step before."""
+    def _drive(self, vehicle: LoadedVehicle, wanted: Sequence[float]) -> float:
+        """J drawn in the step before. wanted: rad/s, wheel by wheel."""
         joints = self.engine.joint_motions(vehicle.index, vehicle.wheels)
-        wheels = list(zip(vehicle.motors, vehicle.by_side(wanted), joints, strict=True))
+        wheels = list(zip(vehicle.motors, wanted, joints, strict=True))
         torques = [motor.step(speed, joint.speed) for motor, speed, joint in wheels]
         self.engine.turn(vehicle.index, vehicle.wheels, [motor.reference for motor in vehicle.motors], torques)
         return sum(motor.power(joint.torque, joint.speed) for motor, _, joint in wheels) / self.rate

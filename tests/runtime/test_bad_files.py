@@ -193,26 +193,55 @@ def test_a_world_that_cannot_be_is_refused_with_file_line_and_mend(root, case):
         path.write_text(whole)
 
 
+def in_a_row(*ys):
+    """Omni wheels that all roll forward."""
+    return {f"wheel_{i}": {"x": 0.1, "y": y, "heading": 0.0} for i, y in enumerate(ys)}
+
+
 VEHICLES = {
     "too many beams": ("sensors.lidar.beams", 100_000, "sensors: lidar: beams: 100000 is above 4096"),
     "beams twice round": ("sensors.lidar.angle_increment", 0.04, "360 beams make 14.4 rad, more than a full turn"),
     "ranges inside out": ("sensors.lidar.range_min", 5.0, "range_min: 5 m is not below range_max, 3.5 m"),
     "a mount turned by degrees": ("sensors.lidar.mount.rpy", [0.0, 0.0, 90], "mount: rpy[2]: 90 is above 7: it is in radians"),
     "a rate of zero": ("sensors.imu.hz", 0.0, "sensors: imu: hz: 0 is below 0.01 Hz"),
-    "one wheel": ("ground.drive.right", "wheel_left_joint", "right: wheel_left_joint is a wheel of the left side too"),
-    "two wheels that are to scrub": ("ground.drive.kind", "skid_steer", "left: one wheel, but skid steer has several on each side"),
-    "more wheels on one side": ("ground.drive.left", ["a", "b"], "right: 1 of them, but 2 on the left side; give as many"),
+    "one wheel": (
+        "ground.drive.right",
+        "wheel_left_joint",
+        "drive: the joint wheel_left_joint is named twice; each wheel has",
+    ),
+    "two wheels that are to scrub": ("ground.drive.kind", "skid_steer", "left: 'wheel_left_joint' is not a list; write [...]"),
+    "a kind that there is not": ("ground.drive.kind", "mecanun", "kind: no 'mecanun' here; did you mean 'mecanum'?"),
+    "more wheels on one side": (
+        "ground.drive",
+        {"kind": "mecanum", "left": ["a", "b"], "right": ["c"], "wheel_radius": 0.1, "track": 0.3, "wheelbase": 0.3},
+        "right: 1 of them, but 2 on the left side; give as many",
+    ),
     "several wheels that are not": (
         "ground.drive",
         {"left": ["a", "b"], "right": ["c", "d"], "wheel_radius": 0.1, "track": 0.3},
-        "left: 2 wheels, but a differential drive has one on each side",
+        "left: a list is not text; put it in quotes",
+    ),
+    "three mecanum wheels a side": (
+        "ground.drive",
+        {"kind": "mecanum", "left": ["a", "b", "c"], "right": ["d", "e", "f"], "wheel_radius": 0.1, "track": 0.3, "wheelbase": 0.3},
+        "left: 3 of them; a mecanum drive has a front and a rear wheel on each side",
+    ),
+    "two omni wheels": (
+        "ground.drive",
+        {"kind": "omni", "wheel_radius": 0.1, "wheels": in_a_row(0.1, -0.1)},
+        "wheels: 2 of them; a vehicle that drives sideways and turns needs three",
+    ),
+    "omni wheels that all roll forward": (
+        "ground.drive",
+        {"kind": "omni", "wheel_radius": 0.1, "wheels": in_a_row(0.1, 0.0, -0.1)},
+        "wheels: so placed they do not drive it forward, sideways and round, each by itself; check headings",
     ),
     "scrub that is not told": (
         "ground.drive",
         {"kind": "skid_steer", "left": ["a", "b"], "right": ["c", "d"], "wheel_radius": 0.1, "track": 0.3},
-        "effective_track: is missing; with four wheels under equal loads it is track + wheelbase^2 / track",
+        "key 'effective_track' is missing: track of the two wheels that turn as all of them do, scrubbing included",
     ),
-    "scrub of two wheels": ("ground.drive.effective_track", 0.2, "effective_track: two wheels do not scrub; leave it out"),
+    "scrub of two wheels": ("ground.drive.effective_track", 0.2, "effective_track: unknown key 'effective_track'; there are: kind, left"),
     "another kind": ("kind", "fixed_wing", "kind is 'fixed_wing' but there is no 'air:' section"),
 }
 

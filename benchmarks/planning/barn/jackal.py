@@ -79,7 +79,7 @@ class Drive:
         """Moves on by one step; the command is clipped to the limits, v and w each for itself, as the wheel controller does."""
         linear = min(max(command.linear, -COMMANDED.linear), COMMANDED.linear)
         angular = min(max(command.angular, -COMMANDED.angular), COMMANDED.angular)
-        wheels = WHEELS.wheels(Twist(*self._ramp.lead(linear, angular, self._dt)))
+        wheels = WHEELS.wheels(self._ramp.lead(Twist(linear, angular), self._dt))
         _skid(self._state, wheels.left, wheels.right, self._dt)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.planning.barn.jackal import TRACK, TRACK_FACTOR, WHEEL_RADIUS
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.states import Noise, Step
-from uvf.maths.kinematics import Twist
+from uvf.maths.kinematics import Twist, Ways
 from uvf.maths.se2 import Pose2
 
 GYRO_NOISE = 0.005 * np.sqrt(0.02)  # rad/s per root of Hz
@@ -43,7 +43,7 @@ class Odometry:
     @property
     def twist(self) -> Twist:
         """Velocity forward [m/s] and turn rate [rad/s]."""
-        return Twist(*self._filter.speeds)
+        return self._filter.velocity
 
     def read(self, rolled: tuple[float, float], yaw: float) -> None:
         """Takes the next reading: angles [rad] of the wheels since the start, and the true yaw [rad, not wrapped] since then."""
@@ -52,4 +52,4 @@ class Odometry:
         noise = GYRO_NOISE / np.sqrt(self._dt) * float(self._rng.standard_normal())
         rate = (yaw - self._yaw) / self._dt + self._bias + noise
         self._ticks, self._yaw = ticks, yaw
-        self._filter.step(Step(self._dt, left, right, float(rate)))
+        self._filter.step(Step(self._dt, Ways(left, right), float(rate)))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from schemas.messages import MissionItem, RallyPoints, Vector3
 from services.autopilot.ground.mission import DRIVABLE
+from uvf.maths.kinematics import Twist
 from uvf.models.mission.fence import Fencing
 
 REACTION = 0.3  # s, until the wheels follow
@@ -21,16 +22,18 @@ class GroundPose:
     yaw: float
 
 
-def stops(fencing: Fencing, here: GroundPose, linear: float, keep: tuple[float, float]) -> bool:
-    """Whether driving on at ``linear`` [m/s] would end nearer to the fence's edge than allowed.
+def stops(fencing: Fencing, here: GroundPose, velocity: Twist, keep: tuple[float, float]) -> bool:
+    """Whether driving on at this velocity would end nearer to the fence's edge than allowed.
 
     keep: (radius of the vehicle [m], deceleration [m/s^2]).
     """
-    if linear == 0.0 or not fencing.steers:
+    speed = math.hypot(velocity.linear, velocity.lateral)
+    if speed == 0.0 or not fencing.steers:
         return False
     radius, deceleration = keep
-    way = math.copysign(abs(linear) * REACTION + linear**2 / (2 * deceleration), linear)
-    end = (here.x + way * math.cos(here.yaw), here.y + way * math.sin(here.yaw))
+    lasts = REACTION + speed / (2 * deceleration)  # s, at this speed
+    ahead, aside, c, s = velocity.linear * lasts, velocity.lateral * lasts, math.cos(here.yaw), math.sin(here.yaw)
+    end = (here.x + ahead * c - aside * s, here.y + ahead * s + aside * c)
     room = fencing.region.at(end)
     return room < radius + MARGIN and room < fencing.region.at((here.x, here.y)) - NEARER
 

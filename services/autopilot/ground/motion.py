@@ -7,8 +7,9 @@ import numpy as np
 
 from schemas.messages import Imu, WheelTicks
 from uvf.maths.filters import LowPass
-from uvf.maths.kinematics import WheelSpeeds
+from uvf.maths.kinematics import DriveKinematics, Twist
 from uvf.maths.rotations import from_euler, matrix
+from uvf.runtime.messages.wheels import counts_of
 
 ASKED = 0.03  # m/s of a wheel, from which on it is asked to turn
 TURNS = 0.2  # of what is asked for; less is held fast
@@ -22,13 +23,17 @@ JUMP = 0.5  # m, of ticks that are counted anew
 class WheelSpeedometer:
     """Low-pass filtered wheel speeds [m/s] from encoder ticks."""
 
-    def __init__(self, radius: float) -> None:
-        """radius: m."""
-        self.left, self.right = LowPass(LAG), LowPass(LAG)
+    def __init__(self, drive: DriveKinematics) -> None:
+        self._speeds = [LowPass(LAG) for _ in drive.wheels(Twist(0.0, 0.0))]
         self.travelled = 0.0
-        """m, by the one that went further, since the start."""
-        self._radius = radius
+        """m, by the one that went furthest, since the start."""
+        self._drive = drive
         self._last: WheelTicks | None = None
+
+    @property
+    def speeds(self) -> list[float]:
+        """m/s at the rims, by the drive's channels; none before there are ticks to compare."""
+        return [speed.value for speed in self._speeds if speed.value is not None]
 
     def step(self, ticks: WheelTicks | None) -> None:
         """Takes the newest encoder ticks; the same message again changes nothing."""
@@ -39,17 +44,20 @@ class WheelSpeedometer:
         if last is None:
             return
         dt = (ticks.timestamp.ToNanoseconds() - last.timestamp.ToNanoseconds()) * 1e-9
-        per_tick = ticks.radians_per_tick * self._radius
-        left, right = (ticks.left - last.left) * per_tick, (ticks.right - last.right) * per_tick
-        if dt > 0 and max(abs(left), abs(right)) < JUMP:
-            self.left.step(left / dt, dt)
-            self.right.step(right / dt, dt)
-            self.travelled += max(abs(left), abs(right))
+        now, then = counts_of(ticks), counts_of(last)
+        if not len(now) == len(then) == len(self._speeds):
+            return
+        per_tick = ticks.radians_per_tick * self._drive.wheel_radius
+        ways = [(a - b) * per_tick for a, b in zip(now, then, strict=True)]
+        if dt > 0 and max(map(abs, ways)) < JUMP:
+            for speed, way in zip(self._speeds, ways, strict=True):
+                speed.step(way / dt, dt)
+            self.travelled += max(map(abs, ways))
 
     @property
     def speed(self) -> float:
-        """Forward speed [m/s]: the mean of both wheels."""
-        return ((self.left.value or 0.0) + (self.right.value or 0.0)) / 2
+        """Forward speed [m/s] by the wheels."""
+        return self._drive.twist([speed / self._drive.wheel_radius for speed in self.speeds]).linear if self.speeds else 0.0
 
 
 class StuckDetector:
@@ -62,7 +70,7 @@ class StuckDetector:
         self.stuck_for = 0.0
         self.how = ""
         self._wheels = wheels
-        self._asked = LowPass(LAG), LowPass(LAG)
+        self._asked: list[LowPass] = []
         self._ahead = LowPass(SPEED_LAG)
         self._rolls = LowPass(SPEED_LAG)
         self._well = 0.0
@@ -71,15 +79,17 @@ class StuckDetector:
         """Starts anew, when somebody has the vehicle try again."""
         self.stuck_for = self._well = 0.0
 
-    def step(self, asked: WheelSpeeds, speed: float | None, dt: float) -> None:
-        """One cycle of ``dt`` [s]. asked: commanded rim speeds [m/s]; speed: forward, as estimated [m/s]; None: unknown."""
+    def step(self, asked: Sequence[float], speed: float | None, dt: float) -> None:
+        """One cycle of ``dt`` [s].
+
+        asked: commanded rim speeds by the drive's channels [m/s]; speed: forward, as estimated [m/s]; None: unknown.
+        """
         slips = self._slips(speed, dt)
-        wheels = self._wheels
-        left, right = (lag.step(speed, dt) for lag, speed in zip(self._asked, asked, strict=True))  # as late as what is measured
-        pairs = ((left, wheels.left.value), (right, wheels.right.value))
-        if wheels.left.value is None or max(map(abs, asked)) < ASKED:
+        self._asked = self._asked or [LowPass(LAG) for _ in asked]
+        late = [lag.step(speed, dt) for lag, speed in zip(self._asked, asked, strict=True)]  # as late as what is measured
+        if not (turning := self._wheels.speeds) or max(map(abs, asked)) < ASKED:
             return
-        fast = any(abs(a) >= ASKED and abs(v or 0.0) < TURNS * abs(a) for a, v in pairs)
+        fast = any(abs(a) >= ASKED and abs(v) < TURNS * abs(a) for a, v in zip(late, turning, strict=True))
         self.how = "wheels are held fast" if fast else "wheels turn in vain"
         self._well = 0.0 if fast or slips else self._well + dt
         if fast or slips:

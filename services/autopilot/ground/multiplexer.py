@@ -6,9 +6,11 @@ from math import isfinite
 
 from schemas.messages import Mode
 from services.autopilot.multiplexing import OFFBOARD, Order, holder, in_turn
+from uvf.maths.kinematics import Twist
 from uvf.runtime.messages.convert import mode_name
 
 COMMAND_MAX_AGE = 0.5  # s
+STANDING = Twist(0.0, 0.0)
 CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
 
 SOURCES: Mapping[int, tuple[str, ...]] = {
@@ -25,11 +27,10 @@ RANKS: Mapping[int, Order] = {mode: in_turn(sources) for mode, sources in SOURCE
 
 @dataclass(frozen=True)
 class VelocityCommand:
-    """A received velocity command. t: when it was sent [s]; linear [m/s], angular [rad/s]; lasts: how long it is valid [s]."""
+    """A received velocity command. t: when it was sent [s]; lasts: how long it is valid [s]."""
 
     t: float
-    linear: float
-    angular: float
+    twist: Twist
     lasts: float = COMMAND_MAX_AGE
 
     def is_fresh(self, t: float) -> bool:
@@ -38,21 +39,20 @@ class VelocityCommand:
 
     @property
     def is_finite(self) -> bool:
-        """Whether both velocities are finite."""
-        return isfinite(self.linear) and isfinite(self.angular)
+        """Whether it is a velocity at all."""
+        return all(map(isfinite, self.twist))
 
 
 @dataclass(frozen=True)
 class ActiveCommand:
-    """The command that is let through: its source ("" = none, stand still), the reason, linear [m/s] and angular [rad/s] velocity.
+    """The command that is let through: its source ("" = none, stand still), the reason, the velocity.
 
     refused: commands that were fresh and admitted but not finite, "" if there are none.
     """
 
     source: str
     reason: str
-    linear: float = 0.0
-    angular: float = 0.0
+    twist: Twist = STANDING
     refused: str = ""
 
 
@@ -67,10 +67,15 @@ def choose(t: float, mode: int, commands: Mapping[str, VelocityCommand], obstacl
     if not admitted:
         return ActiveCommand("", f"mode {mode_name(mode)}")
     fresh = {source: commands[source] for source in admitted if source in commands and commands[source].is_fresh(t)}
-    refused = ", ".join(f"{source} ({c.linear:g} m/s, {c.angular:g} rad/s)" for source, c in fresh.items() if not c.is_finite)
+    refused = ", ".join(f"{source} ({_in_words(c.twist)})" for source, c in fresh.items() if not c.is_finite)
     source = holder([source for source, command in fresh.items() if command.is_finite], RANKS[mode], held)
     if source:
-        return ActiveCommand(source, f"mode {mode_name(mode)}: {source}", fresh[source].linear, fresh[source].angular, refused)
+        return ActiveCommand(source, f"mode {mode_name(mode)}: {source}", fresh[source].twist, refused)
     if refused:
         return ActiveCommand("", f"mode {mode_name(mode)}: not a velocity: {refused}", refused=refused)
     return ActiveCommand("", f"mode {mode_name(mode)}: no fresh command from {', '.join(admitted)}")
+
+
+def _in_words(twist: Twist) -> str:
+    aside = f", {twist.lateral:g} m/s sideways" if twist.lateral else ""
+    return f"{twist.linear:g} m/s, {twist.angular:g} rad/s{aside}"

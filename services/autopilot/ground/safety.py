@@ -1,6 +1,6 @@
 """Keeps watch over a ground vehicle: what its failsafes look at, and its fence."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import NamedTuple
@@ -15,7 +15,7 @@ from services.autopilot.ground.motion import StuckDetector, TiltEstimate, WheelS
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.sight import SensorWatch
 from services.autopilot.link_watch import LinkWatch
-from uvf.maths.kinematics import WheelSpeeds
+from uvf.maths.kinematics import Twist
 from uvf.models.mission.fence import Fencing, near_home
 from uvf.models.vehicle.file import GroundBody
 from uvf.runtime.messages.plans.fences import fence_fault, fencing
@@ -50,8 +50,8 @@ class GroundActivity:
     """Armed and not stopped."""
     is_steered: bool
     """A command is there."""
-    asked: WheelSpeeds
-    """m/s at the rims, of the cycle before."""
+    asked: Sequence[float]
+    """m/s at the rims, by the drive's channels, of the cycle before."""
 
 
 class SensorLooks(NamedTuple):
@@ -77,7 +77,7 @@ class GroundFailsafeMonitor:
         self._keep = body.radius, body.max_linear_acceleration
         self._link = LinkWatch()
         self._times = {"pose_age": 0.0, "setpoint_age": 0.0}
-        self._wheels = WheelSpeedometer(body.drive.wheel_radius)
+        self._wheels = WheelSpeedometer(body.drive.kinematics)
         self._grip, self._tilt, self._sight = StuckDetector(self._wheels), TiltEstimate(looks.imu_rpy), SensorWatch(looks.sweeping)
         self._edges = EdgeWatch(looks.floor)
         self._fenced = self._driven = self._edged = False
@@ -159,14 +159,14 @@ class GroundFailsafeMonitor:
             edge=self._edged,
         )
 
-    def brakes(self, here: GroundPose | None, linear: float) -> bool:
-        """Whether the vehicle at ``linear`` [m/s] has to stop before the fence; it may still turn away from it."""
-        self._fenced = here is not None and stops(self.fencing, here, linear, self._keep)
+    def brakes(self, here: GroundPose | None, velocity: Twist) -> bool:
+        """Whether the vehicle at this velocity has to stop before the fence; it may still turn away from it."""
+        self._fenced = here is not None and stops(self.fencing, here, velocity, self._keep)
         return self._fenced
 
-    def halts(self, linear: float) -> bool:
-        """Whether the vehicle that is to drive at ``linear`` [m/s] has to stand at once before an edge; it may drive away from it."""
-        halts = self._edges.stops(linear)
+    def halts(self, velocity: Twist) -> bool:
+        """Whether the vehicle that is to drive so has to stand at once before an edge; it may drive away from it."""
+        halts = self._edges.stops(velocity)
         self._edged = halts or (self._edged and self._edges.is_near)
         return halts
 

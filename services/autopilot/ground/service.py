@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import inf
+from math import hypot, inf
 
 from schemas.messages import (
     ArmRequest,
     Breach,
+    DriveCommand,
     Event,
     Fence,
     FenceRequest,
@@ -33,10 +34,11 @@ from services.autopilot.multiplexing import DISARMED_OFFBOARD, Once
 from services.autopilot.parameter_state import ToldParams
 from services.autopilot.safe_state import standing
 from uvf.control.drive_limits import DriveLimits, VelocityRamp, within_limits
-from uvf.maths.kinematics import Twist, WheelSpeeds
+from uvf.maths.kinematics import Twist
 from uvf.models.vehicle.file import GroundBody
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import mode_name, seconds, stamp, yaw_of
+from uvf.runtime.messages.wheels import wheel_command
 from uvf.runtime.state.stop_all import StopStatus
 
 STATUS_EVERY, PROGRESS_EVERY = 5, 25
@@ -122,7 +124,7 @@ class GroundAutopilot(Service):
         self._follow_mission(t, position)
         lasts = self.params.stick_timeout if self._mode == Mode.MODE_MANUAL else COMMAND_MAX_AGE
         # An input is gone once it is stale; how long a command counts is the parameter's to say.
-        self._heard |= {k: VelocityCommand(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None}
+        self._heard |= {k: _velocity_command(c) for k, c in commands.items() if c is not None}
         self._choose(t, {k: replace(c, lasts=lasts) for k, c in self._heard.items()})
         out.wheels = self._wheels(t)
         self._report(t, position, out)
@@ -150,8 +152,7 @@ class GroundAutopilot(Service):
 
     def _watch(self, t: float, sensed: GroundSensorInputs) -> None:
         """What the failsafes order, whatever the mode."""
-        rims = self._drive.wheels(Twist(self._ramp.linear, self._ramp.angular))
-        asked = WheelSpeeds(rims.left * self._drive.wheel_radius, rims.right * self._drive.wheel_radius)
+        asked = tuple(speed * self._drive.wheel_radius for speed in self._drive.wheels(self._ramp.velocity))
         doing = GroundActivity(self._mode, self._armed and not self._stop, bool(self._choice.source), asked)
         self._safety.keep_near(self._engine.home, self.params.max_distance)
         events, order = self._safety.step(t, sensed, doing, self.params, 1.0 / self.hz)
@@ -261,16 +262,20 @@ class GroundAutopilot(Service):
         if self._choice.refused and t - self._refused_at >= REFUSALS_EVERY:
             self._refused_at = t
             self._tell(t, f"command refused: {self._choice.refused}", "it is not a velocity", Event.WARNING)
+        if self._choice.twist.lateral and not self._drive.goes_sideways and t - self._refused_at >= REFUSALS_EVERY:
+            self._refused_at = t
+            self._tell(t, f"sideways velocity of {self._choice.source} left out", "it cannot drive sideways", Event.WARNING)
 
     def _wheels(self, t: float) -> WheelCommand:
         top_speed = self._engine.speed if self._mode == Mode.MODE_MISSION and self._engine.speed else self._body.max_linear
-        wanted = within_limits(self._choice.linear, self._choice.angular, self._ramp.limits, top_speed)
-        if self._safety.brakes(self._here, wanted[0]):
-            wanted = 0.0, wanted[1]
-        if self._safety.halts(wanted[0] or self._ramp.linear):
-            wanted, self._ramp.linear = (0.0, wanted[1]), 0.0
-        left, right = self._drive.wheels(Twist(*self._ramp.lead(*wanted, 1.0 / self.hz)))
-        return WheelCommand(timestamp=stamp(t), left=left, right=right)
+        asked = self._choice.twist if self._drive.goes_sideways else self._choice.twist._replace(lateral=0.0)
+        wanted = within_limits(asked, self._ramp.limits, top_speed)
+        if self._safety.brakes(self._here, wanted):
+            wanted = Twist(0.0, wanted.angular)
+        if self._safety.halts(wanted if _goes(wanted) else self._ramp.velocity):
+            wanted = Twist(0.0, wanted.angular)
+            self._ramp.stand()
+        return wheel_command(t, self._drive.wheels(self._ramp.lead(wanted, 1.0 / self.hz)))
 
     def _report(self, t: float, position: Point | None, out: interface.Outputs) -> None:
         self._steps += 1
@@ -305,7 +310,7 @@ class GroundAutopilot(Service):
             stops=self._stop.engagements,
             command_source=self._choice.source,
             reason=self._choice.reason,
-            throttle=abs(self._ramp.linear) / self._body.max_linear,
+            throttle=hypot(self._ramp.velocity.linear, self._ramp.velocity.lateral) / self._body.max_linear,
             battery_remaining=battery.remaining if battery is not None else UNKNOWN_BATTERY,
             battery_voltage=battery.voltage if battery is not None else 0.0,
             prearm=self._safety.faults(),
@@ -320,3 +325,12 @@ class GroundAutopilot(Service):
 
     def _tell(self, t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> None:
         self._events.append(Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source="autopilot"))
+
+
+def _velocity_command(m: DriveCommand) -> VelocityCommand:
+    return VelocityCommand(seconds(m.timestamp), Twist(m.linear, m.angular, m.lateral))
+
+
+def _goes(velocity: Twist) -> bool:
+    """Whether it leads to another place."""
+    return velocity.linear != 0.0 or velocity.lateral != 0.0

@@ -10,6 +10,7 @@ from uvf.estimation.odometry.calibration import Scales, WheelCalibration
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.slip import sigma
 from uvf.estimation.odometry.states import HEADING, POSE, SPEED
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2
 from uvf.runtime.messages.convert import planar_frame, planar_pose, quaternion, stamp
@@ -18,7 +19,7 @@ Floats = NDArray[np.float64]
 
 SOURCE = "odometry"
 PLANAR = (0, 1, 5)  # rows of a covariance in space: x, y, heading
-NO_SIDEWAYS = 1e-4  # m^2/s^2, variance of a speed that there is none of
+SIDEWAYS = 1e-4  # m^2/s^2, variance of a speed that most have none of
 
 
 def odometry(t: float, vehicle: str, odom_from_base: Pose2, drive: DriveFilter, left_over: dict[str, str]) -> Odometry:
@@ -26,16 +27,16 @@ def odometry(t: float, vehicle: str, odom_from_base: Pose2, drive: DriveFilter, 
 
     left_over: what the next instance needs.
     """
-    linear, angular = drive.speeds
+    linear, angular, lateral = drive.velocity
     pose, twist = np.zeros((6, 6)), np.zeros((6, 6))
     pose[np.ix_(PLANAR, PLANAR)] = drive.covariance[POSE, POSE]
-    twist[0, 0], twist[1, 1], twist[5, 5] = drive.covariance[SPEED, SPEED], NO_SIDEWAYS, drive.turn_rate_variance
+    twist[0, 0], twist[1, 1], twist[5, 5] = drive.covariance[SPEED, SPEED], SIDEWAYS, drive.turn_rate_variance
     return Odometry(
         timestamp=stamp(t),
         frame_id=f"{vehicle}/odom",
         body_frame_id=f"{vehicle}/base_footprint",
         pose=planar_pose(*odom_from_base),
-        linear_velocity=Vector3(x=linear),
+        linear_velocity=Vector3(x=linear, y=lateral),
         angular_velocity=Vector3(z=angular),
         pose_covariance=pose.ravel().tolist(),
         velocity_covariance=twist.ravel().tolist(),
@@ -66,14 +67,15 @@ def moving(t: float, vehicle: str, odom_from_base: Pose2) -> FrameTransform:
     return planar_frame(t, f"{vehicle}/odom", f"{vehicle}/base_footprint", odom_from_base)
 
 
-def nav_state(t: float, world_from_base: Pose2, speeds: tuple[float, float], position_sigma: float) -> NavState:
-    """Pose [m, rad, world] and speeds (linear [m/s], angular [rad/s]) as a message stamped ``t`` [s]; position_sigma [m]."""
-    linear, angular = speeds
+def nav_state(t: float, world_from_base: Pose2, velocity: Twist, position_sigma: float) -> NavState:
+    """Pose [m, rad, world] and velocity as a message stamped ``t`` [s]; position_sigma [m]."""
+    linear, angular, lateral = velocity
     x, y, heading = world_from_base
+    c, s = np.cos(heading), np.sin(heading)
     return NavState(
         timestamp=stamp(t),
         position=Vector3(x=x, y=y),
-        velocity=Vector3(x=linear * np.cos(heading), y=linear * np.sin(heading)),
+        velocity=Vector3(x=linear * c - lateral * s, y=linear * s + lateral * c),
         orientation=quaternion(from_euler(0.0, 0.0, heading)),
         angular_velocity=Vector3(z=angular),
         position_sigma=position_sigma,

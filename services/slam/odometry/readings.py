@@ -7,10 +7,12 @@ from schemas.messages import Gnss, Imu, WheelTicks
 from uvf.estimation.odometry.inclination import Inclination
 from uvf.estimation.odometry.satellites import SatelliteFix
 from uvf.estimation.odometry.states import Step
+from uvf.maths.kinematics import Twist, Ways
 from uvf.maths.rotations import from_euler, matrix
 from uvf.models.vehicle.file import GroundBody
 from uvf.models.vehicle.sensors import Mount
 from uvf.runtime.messages.convert import array, seconds
+from uvf.runtime.messages.wheels import counts_of
 
 Floats = NDArray[np.float64]
 
@@ -24,7 +26,8 @@ class Readings:
 
     def __init__(self, body: GroundBody, imu: Mount | None) -> None:
         mount = imu or Mount()
-        self._radius, self._fastest = body.drive.wheel_radius, body.max_linear
+        self._drive, self._fastest = body.drive.kinematics, body.max_linear
+        self._channels = len(self._drive.wheels(Twist(0.0, 0.0)))
         self._body_from_imu: Floats = matrix(from_euler(*mount.rpy))
         self._arm = mount.xyz
         self._waiting: list[Imu] = []
@@ -35,7 +38,7 @@ class Readings:
     @property
     def resolution(self) -> float:
         """Distance [m] that a wheel rolls from one tick to the next."""
-        return self.last.radians_per_tick * self._radius if self.last else 0.0
+        return self.last.radians_per_tick * self._drive.wheel_radius if self.last else 0.0
 
     def take(self, wheels: WheelTicks, imu: list[Imu]) -> Step | None:
         """The step that ends with a new wheel message; None where counters jump, because they were reset or are broken."""
@@ -47,31 +50,33 @@ class Readings:
             rates, forces = self._until(now)
         if last is None or dt <= 0.0 or not 0.0 < wheels.radians_per_tick <= 2 * np.pi:
             return None
-        left = (wheels.left - last.left) * wheels.radians_per_tick * self._radius
-        right = (wheels.right - last.right) * wheels.radians_per_tick * self._radius
-        if max(abs(left), abs(right)) > JUMP * self._fastest * dt + wheels.radians_per_tick * self._radius:
+        now_counts, counts = counts_of(wheels), counts_of(last)
+        if not len(now_counts) == len(counts) == self._channels:
+            return None
+        ways = self._drive.ways([(b - a) * wheels.radians_per_tick for a, b in zip(counts, now_counts, strict=True)])
+        if max(map(abs, ways)) > JUMP * self._fastest * dt + self.resolution:
             return None
         if dt > MAX_GAP or not len(rates):
-            return Step(dt, left, right)
-        return self._step(dt, (left, right), rates.mean(axis=0), forces.mean(axis=0))
+            return Step(dt, ways)
+        return self._step(dt, ways, rates.mean(axis=0), forces.mean(axis=0))
 
-    def _step(self, dt: float, ways: tuple[float, float], rate: Floats, force: Floats) -> Step:
+    def _step(self, dt: float, ways: Ways, rate: Floats, force: Floats) -> Step:
         """rate, force: (3,) means of the inertial unit, in its axes; what is no number or no vehicle survives is left out.
 
-        The accelerometer feels the turning, too, where it sits off the axle.
+        The accelerometer feels the turning, too, where it sits off the axle, or the vehicle drives sideways.
         """
         if not np.abs(rate).max() <= MAX_RATE:
-            return Step(dt, *ways)
+            return Step(dt, ways)
         rate = self._body_from_imu @ rate
         turning = float(rate[2])
         angular, self._turning = (turning - self._turning) / dt, turning
         if not (np.any(force) and np.abs(force).max() < MAX_FORCE):
-            return Step(dt, *ways, turning)
+            return Step(dt, ways, turning)
         x, y, _ = self._arm
         on_axle = self._body_from_imu @ force + (turning**2 * x + angular * y, turning**2 * y - angular * x, 0.0)
         tilting = self._inclination.step(dt, rate, on_axle, ways)
         ways, turning = self._inclination.seen_from_above(ways, rate)
-        return Step(dt, *ways, turning, float(on_axle[0]), *tilting)
+        return Step(dt, ways, turning, float(on_axle[0]) + turning * ways.aside / dt, *tilting)
 
     def _until(self, now: float) -> tuple[Floats, Floats]:
         """(n, 3) rates and forces of the samples of the interval that the wheels tell of."""

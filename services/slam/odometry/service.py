@@ -13,18 +13,19 @@ from uvf.estimation.odometry.slip import Episodes, MatchedMotion, Unseen
 from uvf.estimation.odometry.states import Step
 from uvf.estimation.odometry.world import MapPose, SatellitePose
 from uvf.maths.geodesy import LocalTangent
-from uvf.maths.kinematics import Twist, move
+from uvf.maths.kinematics import move
 from uvf.maths.se2 import Pose2
 from uvf.models.vehicle.file import VehicleFile
 from uvf.runtime.contract.declaration import Reads, Writes, every, optional, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import planar_pose, pose2_of, pose2_of_frame, seconds, stamp
+from uvf.runtime.messages.wheels import counts_of, wheel_ticks
 from uvf.sensors.sampling import Due
 
 FORGOTTEN = 2.0  # s without a match, after which nobody contradicts the wheels
 MAX_PREDICTION = 0.1  # s, wheel data older than this is not extrapolated further
 
-LEFT, RIGHT, BIAS, SCALES = "left_ticks", "right_ticks", "gyro_bias", "scales"
+COUNTS, BIAS, SCALES = "wheel_ticks", "gyro_bias", "scales"
 """What the odometry carries beside the pose, for an instance that is to go on after it."""
 
 
@@ -70,7 +71,8 @@ class OdometryService(Service):
         if file.ground is None:
             raise ValueError(f"{vehicle} is not a ground vehicle")
         self.params = params
-        self._vehicle, self._track = vehicle, file.ground.drive.kinematics.track
+        drive = file.ground.drive.kinematics
+        self._vehicle, self._track, self._goes_sideways = vehicle, drive.track, drive.goes_sideways
         self._readings = Readings(file.ground, file.sensors.imu.mount if file.sensors.imu else None)
         self._filter = DriveFilter(params.filter, params.noise(0.0), self._track)
         self._map = MapPose(world_from_map)
@@ -106,7 +108,7 @@ class OdometryService(Service):
             self._satellites.take([satellite_fix(m) for m in now.gnss or []], self._filter.pose)
         events += self._calibrate(t)
         ahead = min(t - seconds(now.wheels.timestamp), MAX_PREDICTION)
-        out = self._told(t, move(self._filter.pose, Twist(*self._filter.speeds), ahead))
+        out = self._told(t, move(self._filter.pose, self._filter.velocity, ahead))
         out.events = events
         return out
 
@@ -121,7 +123,7 @@ class OdometryService(Service):
         """Nothing from a message that somebody else has left: it lacks the ticks."""
         known = {pair.key: pair.value for pair in odometry.metadata}
         try:
-            bias, left, right = float(known[BIAS]), int(known[LEFT]), int(known[RIGHT])
+            bias, counts = float(known[BIAS]), [int(text) for text in known[COUNTS].split()]
             applied = Scales(*map(float, known[SCALES].split())) if SCALES in known else Scales()
         except (KeyError, ValueError, TypeError):
             return
@@ -130,7 +132,7 @@ class OdometryService(Service):
             return
         self._filter.resume(pose, messages.pose_covariance(odometry), bias if isfinite(bias) else 0.0)
         self._applied = applied if all(0.7 < scale < 1.4 for scale in applied) else Scales()
-        self._readings.last = WheelTicks(timestamp=odometry.timestamp, left=left, right=right)
+        self._readings.last = wheel_ticks(seconds(odometry.timestamp), counts, 0.0)
 
     def _set_up(self) -> None:
         """Parameters as they are now, and the wheels by them and by what has been found."""
@@ -150,7 +152,7 @@ class OdometryService(Service):
         return [self._filter] if self._satellites is None else [self._filter, self._satellites.drive]
 
     def _move(self, t: float, told: Step) -> None:
-        step = told._replace(left=told.left * self._scales.left, right=told.right * self._scales.right)
+        step = told._replace(ways=told.ways._replace(left=told.left * self._scales.left, right=told.right * self._scales.right))
         self._driven += abs(step.left + step.right) / 2
         for drive in self._drives:
             drive.is_unseen = self._unseen is not None
@@ -192,7 +194,7 @@ class OdometryService(Service):
 
     def _calibrate(self, t: float) -> list[Event]:
         """Scales that have become certain are told once, and put in force where this is wanted."""
-        if self.params.calibrate == "off" or self._has_told or not self._calibration.is_certain:
+        if self.params.calibrate == "off" or self._goes_sideways or self._has_told or not self._calibration.is_certain:
             return []
         self._has_told = True
         if not self._calibration.differs:
@@ -205,7 +207,7 @@ class OdometryService(Service):
 
     def _told(self, t: float, odom_from_base: Pose2) -> Outputs:
         drive, last = self._filter, self._readings.last or WheelTicks()
-        left_over = {LEFT: str(last.left), RIGHT: str(last.right), BIAS: repr(drive.bias)}
+        left_over = {COUNTS: " ".join(map(str, counts_of(last))), BIAS: repr(drive.bias)}
         if self._applied != Scales():
             left_over[SCALES] = " ".join(map(repr, self._applied))
         pose, sigma = self._map.world_from(odom_from_base), self._map.sigma(drive.covariance, self.params.map_sigma)
@@ -217,6 +219,6 @@ class OdometryService(Service):
             odometry=messages.odometry(t, self._vehicle, odom_from_base, drive, left_over),
             moving=messages.moving(t, self._vehicle, odom_from_base),
             pose=PoseInFrame(timestamp=stamp(t), frame_id="world", pose=planar_pose(*pose)),
-            nav_state=messages.nav_state(t, pose, drive.speeds, sigma),
+            nav_state=messages.nav_state(t, pose, drive.velocity, sigma),
             quality=messages.quality(t, sigma, drive, (known, ratio)) if self._quality_due.at(t) else None,
         )

@@ -3,8 +3,9 @@
 Siegwart & Nourbakhsh, Introduction to Autonomous Mobile Robots, 3.2; the pose is that of the middle of the axle.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +17,19 @@ Floats = NDArray[np.float64]
 
 
 class Twist(NamedTuple):
-    """Velocity of the body: ``linear`` forward [m/s], ``angular`` counter-clockwise [rad/s]."""
+    """Velocity of the body: ``linear`` forward [m/s], ``angular`` counter-clockwise [rad/s], ``lateral`` to the left [m/s]."""
 
     linear: float
     angular: float
+    lateral: float = 0.0
+
+
+class Ways(NamedTuple):
+    """What a vehicle's wheels have rolled: left and right as a differential drive, and sideways to the left [m]."""
+
+    left: float
+    right: float
+    aside: float = 0.0
 
 
 class WheelSpeeds(NamedTuple):
@@ -29,6 +39,37 @@ class WheelSpeeds(NamedTuple):
     right: float
 
 
+class DriveKinematics(Protocol):
+    """How the speeds of a vehicle's wheels and its motion belong together: one speed a side, or one a wheel."""
+
+    @property
+    def wheel_radius(self) -> float:
+        """m."""
+        ...
+
+    @property
+    def track(self) -> float:
+        """Of the two wheels that turn on the spot as this drive does [m]."""
+        ...
+
+    @property
+    def goes_sideways(self) -> bool:
+        """Whether it can move to the side without turning."""
+        ...
+
+    def twist(self, wheels: Sequence[float]) -> Twist:
+        """Velocity of the body at these speeds [rad/s]."""
+        ...
+
+    def wheels(self, twist: Twist) -> tuple[float, ...]:
+        """Speeds [rad/s] for a commanded velocity of the body."""
+        ...
+
+    def ways(self, turned: Sequence[float]) -> Ways:
+        """Ways of the two wheels of ``track`` that would turn it as much, and sideways, by wheels that have turned so far [rad]."""
+        ...
+
+
 @dataclass(frozen=True)
 class DifferentialDrive:
     """Geometry of a differential drive. wheel_radius: r [m]; track: l [m], between the wheels' contact points."""
@@ -36,10 +77,20 @@ class DifferentialDrive:
     wheel_radius: float
     track: float
 
-    def twist(self, wheels: WheelSpeeds) -> Twist:
+    @property
+    def goes_sideways(self) -> bool:
+        """No."""
+        return False
+
+    def twist(self, wheels: Sequence[float]) -> Twist:
         """Forward kinematics: v = r (w_r + w_l) / 2, omega = r (w_r - w_l) / l."""
-        r, left, right = self.wheel_radius, wheels.left, wheels.right
+        r, (left, right) = self.wheel_radius, wheels
         return Twist(r * (right + left) / 2, r * (right - left) / self.track)
+
+    def ways(self, turned: Sequence[float]) -> Ways:
+        """Ways of the left and the right wheel, by wheels that have turned so far [rad]."""
+        left, right = turned
+        return Ways(left * self.wheel_radius, right * self.wheel_radius)
 
     def wheels(self, twist: Twist) -> WheelSpeeds:
         """Inverse kinematics: the wheel speeds for a commanded body velocity."""
@@ -50,25 +101,23 @@ class DifferentialDrive:
 def move(pose: Pose2, twist: Twist, dt: float) -> Pose2:
     """Pose after ``dt`` [s] at constant velocity: the exact arc about the instantaneous centre of curvature.
 
-    Written by the arc's chord, v dt sinc(omega dt / 2) along the mean heading, which equals the rotation about
+    Written by the arc's chord, v dt sinc(omega dt / 2) along the mean heading and across it, which equals the rotation about
     ICC = (x - R sin yaw, y + R cos yaw), R = v / omega, and has no special case for straight lines.
     """
     turn = twist.angular * dt
-    chord = twist.linear * dt * float(np.sinc(turn / (2 * np.pi)))
+    bend = dt * float(np.sinc(turn / (2 * np.pi)))
+    ahead, aside = twist.linear * bend, twist.lateral * bend
     x, y, yaw = pose
-    heading = yaw + turn / 2
-    return Pose2(x + chord * float(np.cos(heading)), y + chord * float(np.sin(heading)), wrap(yaw + turn))
+    c, s = float(np.cos(yaw + turn / 2)), float(np.sin(yaw + turn / 2))
+    return Pose2(x + ahead * c - aside * s, y + ahead * s + aside * c, wrap(yaw + turn))
 
 
 def twist_between(start: Pose2, end: Pose2, dt: float) -> Twist:
-    """Constant velocity whose arc leads from one pose to the other in ``dt`` [s]: the inverse of ``move`` for turns below pi.
-
-    Where no arc does, because of a step sideways, the one of the same turn whose chord reaches as far along its heading.
-    """
+    """Constant velocity whose arc leads from one pose to the other in ``dt`` [s]: the inverse of ``move`` for turns below pi."""
     turn = wrap(end.yaw - start.yaw)
-    heading = start.yaw + turn / 2
-    chord = (end.x - start.x) * float(np.cos(heading)) + (end.y - start.y) * float(np.sin(heading))
-    return Twist(chord / (dt * float(np.sinc(turn / (2 * np.pi)))), turn / dt)
+    c, s = float(np.cos(start.yaw + turn / 2)), float(np.sin(start.yaw + turn / 2))
+    x, y, bend = end.x - start.x, end.y - start.y, dt * float(np.sinc(turn / (2 * np.pi)))
+    return Twist((x * c + y * s) / bend, turn / dt, (y * c - x * s) / bend)
 
 
 def spin_velocity(angular_velocity: Floats, arm: Floats) -> Floats:

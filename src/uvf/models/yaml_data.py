@@ -199,6 +199,7 @@ def _short(name: str) -> str:
 
 def _check(data: Any, hint: Any, place: FileLocation) -> None:
     """Inner parts first, so that what is refused is named where it stands; no number is not finite."""
+    hint = _of_kind(data, hint, place)
     for key, value, inner in _parts(data, hint, place):
         _check(value, inner, place.at(key))
     if isinstance(data, float) and not math.isfinite(data):
@@ -212,6 +213,22 @@ def _check(data: Any, hint: Any, place: FileLocation) -> None:
         raise BadInput(f"{place}: {in_words(data, hint, str(error).partition(' - at `')[0])}") from error
 
 
+def _of_kind(data: Any, hint: Any, place: FileLocation) -> Any:
+    """Of a union of structs that one key tells apart (msgspec's tag), the one that this key names; any other type as it is."""
+    bare = get_args(hint)[0] if get_origin(hint) is Annotated else hint
+    if get_origin(bare) not in (Union, UnionType) or not isinstance(data, dict):
+        return hint
+    structs = [kind for kind in get_args(bare) if isinstance(kind, type) and issubclass(kind, msgspec.Struct)]
+    kinds = {str(kind.__struct_config__.tag): kind for kind in structs}
+    if len(kinds) < 2:
+        return hint
+    key = str(next(iter(kinds.values())).__struct_config__.tag_field)
+    named = str(data.get(key))
+    if named not in kinds:
+        raise BadInput(f"{place.at(key)}: no '{named}' here; {nearest(named, kinds)}")
+    return kinds[named]
+
+
 def _parts(data: Any, hint: Any, place: FileLocation) -> Iterator[tuple[Any, Any, Any]]:
     """(key, value, type) of what ``data`` consists of, as far as it has the shape of its type."""
     origin = get_origin(hint)
@@ -222,9 +239,13 @@ def _parts(data: Any, hint: Any, place: FileLocation) -> Iterator[tuple[Any, Any
             yield from _parts(data, next(a for a in get_args(hint) if a is not type(None)), place)
     elif isinstance(data, dict) and isinstance(hint, type) and issubclass(hint, msgspec.Struct):
         hints = hints_of(hint)
+        kind = hint.__struct_config__.tag_field
         for key, value in data.items():
+            if key == kind:
+                continue
             if key not in hints:
-                raise BadInput(f"{place.at(key)}: unknown key '{key}'; {nearest(str(key), hints, KEYS_LISTED)}")
+                known = [*hints, *([kind] if kind else [])]
+                raise BadInput(f"{place.at(key)}: unknown key '{key}'; {nearest(str(key), known, KEYS_LISTED)}")
             yield key, value, hints[key]
     elif isinstance(data, dict) and origin is dict:
         names, values = get_args(hint)

@@ -8,6 +8,7 @@ from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.inclination import Inclination
 from uvf.estimation.odometry.states import Noise, Step
 from uvf.maths.geodesy import GRAVITY
+from uvf.maths.kinematics import Ways
 from uvf.maths.rotations import from_euler, matrix
 
 BIAS = np.array((0.08, -0.06, 0.02))  # m/s^2
@@ -25,7 +26,7 @@ def on_a_slope(steepest, speed, turning, seconds=30.0):
         force = gravity + ((driven - last) / DT, driven * turned, 0.0) + BIAS + 0.05 * rng.standard_normal(3)
         rate = np.array((0.002, -rising - 0.003, turned)) + 0.002 * rng.standard_normal(3)
         side = turned * TRACK / 2
-        ways = ((driven + last) / 2 - side) * DT, ((driven + last) / 2 + side) * DT
+        ways = Ways(((driven + last) / 2 - side) * DT, ((driven + last) / 2 + side) * DT)
         last = driven
         yield rate, force, ways, gravity
 
@@ -35,9 +36,9 @@ def test_turning_on_a_slope_is_no_slip(degrees):
     for speed, turning in ((0.3, 1.0), (0.4, -2.5)):
         inclination, one = Inclination(), DriveFilter("ekf", Noise(), TRACK)
         for rate, force, ways, _ in on_a_slope(np.radians(degrees), speed, turning):
-            one.step(Step(DT, *ways, rate[2], force[0], *inclination.step(DT, rate, force, ways)))
+            one.step(Step(DT, ways, rate[2], force[0], *inclination.step(DT, rate, force, ways)))
             assert one.doubt is None
-        assert one.speeds[0] == pytest.approx(speed, abs=0.01)
+        assert one.velocity.linear == pytest.approx(speed, abs=0.01)
 
 
 @pytest.mark.parametrize("degrees", [0.0, 6.0])
@@ -68,7 +69,7 @@ def test_a_blow_is_no_slope():
 def test_a_gyroscope_that_is_biased_does_not_tilt_a_vehicle_that_stands(bias):
     inclination = Inclination()
     for _ in range(1500):
-        tilting = inclination.step(DT, np.array((0.01, bias, 0.0)), np.array((0.0, 0.0, GRAVITY)), (0.0, 0.0))
+        tilting = inclination.step(DT, np.array((0.01, bias, 0.0)), np.array((0.0, 0.0, GRAVITY)), Ways(0.0, 0.0))
     assert tilting.rate == pytest.approx(0.0, abs=1e-3)
 
 
@@ -80,13 +81,13 @@ def test_a_slope_is_found_again_after_the_inertial_unit_was_silent(degrees, sile
     steps = list(on_a_slope(np.radians(degrees), 0.3, 1.0, 40.0))
     for k, (rate, force, ways, _) in enumerate(steps):
         if 1000 <= k < 1000 + silent / DT:
-            one.step(Step(DT, *ways))
+            one.step(Step(DT, ways))
         else:
-            one.step(Step(DT, *ways, rate[2], force[0], *inclination.step(DT, rate, force, ways)))
+            one.step(Step(DT, ways, rate[2], force[0], *inclination.step(DT, rate, force, ways)))
         doubted += one.doubt is not None
     assert inclination.state[:2] == pytest.approx(steps[-1][3][:2], abs=0.15)
     assert doubted * DT < 2.5
-    assert one.speeds[0] == pytest.approx(0.3, abs=0.02)
+    assert one.velocity.linear == pytest.approx(0.3, abs=0.02)
 
 
 @pytest.mark.parametrize(("roll", "pitch"), [(0.0, 0.0), (0.0, -0.25), (0.2, 0.0), (-0.15, 0.2)])
@@ -96,6 +97,6 @@ def test_ways_and_turns_are_told_as_from_above(roll, pitch):
     upward = matrix(from_euler(roll, pitch, 0.0))[2]
     inclination.state[:2] = GRAVITY * upward[:2]
     rate = np.array((0.1, -0.2, 0.5))
-    ways, turning = inclination.seen_from_above((1.0, 2.0), rate)
-    assert ways == pytest.approx((np.cos(pitch), 2.0 * np.cos(pitch)))
+    ways, turning = inclination.seen_from_above(Ways(1.0, 2.0, 3.0), rate)
+    assert ways == pytest.approx((np.cos(pitch), 2.0 * np.cos(pitch), 3.0 * np.sqrt(1.0 - upward[1] ** 2)))
     assert turning == pytest.approx((rate[1] * np.sin(roll) + rate[2] * np.cos(roll)) / np.cos(pitch))

@@ -26,11 +26,11 @@ def drive(folder, twist, duration):
     ground = load_vehicle(folder.parent, folder.name).ground
     kinematics = ground.drive.kinematics
     world = BulletWorld([], {"it": BodyPlacement(ground, engine_urdf(folder / ground.urdf), (0.0, 0.0, 0.0))})
-    most = np.array((ground.max_linear_acceleration, ground.max_angular_acceleration)) * STEP
-    command, expected, turned, last, tilt = np.zeros(2), np.zeros(3), 0.0, 0.0, 0.0
+    most = np.array((ground.max_linear_acceleration, ground.max_angular_acceleration, ground.max_linear_acceleration)) * STEP
+    command, expected, turned, last, tilt = np.zeros(3), np.zeros(3), 0.0, 0.0, 0.0
     try:
         for i in range(round((duration + 2.0) / STEP)):
-            wanted = np.array(twist) if i * STEP < duration else np.zeros(2)
+            wanted = np.array(Twist(*twist)) if i * STEP < duration else np.zeros(3)
             command = command + np.clip(wanted - command, -most, most)
             expected = rolled(expected, command)
             world.advance({"it": kinematics.wheels(Twist(*command))}, STEP)
@@ -44,8 +44,10 @@ def drive(folder, twist, duration):
 
 def rolled(pose, command):
     """x, y, yaw after a step along the arc about the ICC."""
-    (x, y, yaw), (v, w) = pose, command
+    (x, y, yaw), (v, w, aside) = pose, command
     if abs(w) < 1e-9:
-        return np.array((x + v * STEP * np.cos(yaw), y + v * STEP * np.sin(yaw), yaw))
-    radius, new = v / w, yaw + w * STEP
-    return np.array((x + radius * (np.sin(new) - np.sin(yaw)), y - radius * (np.cos(new) - np.cos(yaw)), new))
+        c, s = np.cos(yaw) * STEP, np.sin(yaw) * STEP
+        return np.array((x + v * c - aside * s, y + v * s + aside * c, yaw))
+    new = yaw + w * STEP
+    sines, cosines = (np.sin(new) - np.sin(yaw)) / w, (np.cos(new) - np.cos(yaw)) / w
+    return np.array((x + v * sines + aside * cosines, y - v * cosines + aside * sines, new))

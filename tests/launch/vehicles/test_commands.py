@@ -34,7 +34,7 @@ def test_list_names_all_of_them(vehicles):
 
 def test_show_prints_figures_and_frames(vehicles):
     output = run("show", "burger").output
-    assert "track 0.16 m" in output and "wheel_left_link  0 0.08 0.033  (continuous wheel_left_joint)" in output
+    assert "0.16 m apart" in output and "wheel_left_link  0 0.08 0.033  (continuous wheel_left_joint)" in output
 
 
 def test_check_draws_the_tree_and_a_picture(vehicles, tmp_path):

@@ -103,6 +103,39 @@ def test_skid_steer_turns_about_base_link_wherever_its_mass_is(tmp_path):
     assert driven.pose == pytest.approx(driven.expected, abs=0.06)  # what pulls it inwards on the arc shifts the slip a little
 
 
+LEFT = "- wheel_left_{}_joint\n    - wheel_left_{}_joint"
+MECANUM = "libgazebo_ros_skid_steer_drive.so", "gz-sim-mecanum-drive-system"
+
+
+@pytest.mark.parametrize("twist", [(0.0, 0.0, 0.3), (0.2, 0.0, -0.2), (0.2, 0.5, 0.1)])
+def test_mecanum_wheels_drive_it_every_way(tmp_path, twist):
+    notes = import_one(tmp_path, "skid_steer", MECANUM)
+    folder = tmp_path / "vehicles" / "it"
+    drive_file = load_vehicle(folder.parent, "it").ground.drive
+    assert (drive_file.kind, drive_file.track, drive_file.wheelbase) == ("mecanum", pytest.approx(0.4), pytest.approx(0.32))
+    assert any("mecanum wheels" in line for line in notes) and inspect(folder).faults == []
+    driven = drive(folder, twist, 4.0)
+    assert driven.pose == pytest.approx(driven.expected, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ("wheelbase: .*", "wheelbase: 0.4", "drive: wheelbase: 0.4 m, but the left wheels are 0.32 m apart in the URDF"),
+        (
+            "- wheel_left_1_joint\\n    - wheel_left_2",
+            "- wheel_left_2_joint\\n    - wheel_left_1",
+            "behind the second; name the front wheel first",
+        ),
+    ],
+)
+def test_mecanum_wheels_that_the_urdf_has_elsewhere_are_a_fault(tmp_path, old, new, why):
+    import_one(tmp_path, "skid_steer", MECANUM)
+    path = tmp_path / "vehicles" / "it" / "vehicle.yaml"
+    path.write_text(re.sub(old, new, path.read_text()))
+    assert any(why in fault for fault in inspect(path.parent).faults)
+
+
 def test_a_wrong_effective_track_is_a_fault_that_names_the_right_one(tmp_path):
     import_one(tmp_path, "skid_steer")
     path = tmp_path / "vehicles" / "it" / "vehicle.yaml"

@@ -69,4 +69,4 @@ def test_the_bias_stays_and_the_noise_averages_out():
 
 def test_the_encoder_counts_whole_ticks_both_ways():
     sensor = Encoders(hz=50.0, ticks_per_turn=4096)
-    assert ticks(sensor, (2 * np.pi * 2 + 1e-6, -1e-6)) == (8192, -1)
+    assert ticks(sensor, (2 * np.pi * 2 + 1e-6, -1e-6), (0, 1)) == [8192, -1]

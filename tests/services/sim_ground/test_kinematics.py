@@ -37,7 +37,7 @@ def lowest_up(shaped):
     up = 1.0
     for n in range(400):
         wanted = Twist(0.8 if n < 200 else -0.8, 0.0)
-        world.advance({"burger": wheels.wheels(Twist(*ramp.lead(*wanted, 0.01)) if shaped else wanted)}, 0.01)
+        world.advance({"burger": wheels.wheels(ramp.lead(wanted, 0.01) if shaped else wanted)}, 0.01)
         up = min(up, matrix(world.state("burger").world_from_body)[2, 2])
     world.close()
     return up

@@ -109,7 +109,9 @@ def test_a_correction_without_orientation_is_none_of_the_heading():
     assert math.isfinite(out["pose"].pose.position.x)
 
 
-@pytest.mark.parametrize("left", [{}, {"left_ticks": "x"}, {"left_ticks": "1", "right_ticks": "2", "gyro_bias": "nan"}])
+@pytest.mark.parametrize(
+    "left", [{}, {"wheel_ticks": "x"}, {"wheel_ticks": "1 2", "gyro_bias": "nan"}, {"wheel_ticks": "1 2 3", "gyro_bias": "0"}]
+)
 def test_an_odometry_left_by_somebody_else_is_not_taken_up_blindly(left):
     service = OdometryService("v", BURGER, START, OdometryParams())
     recall(service, odometry=Odometry(pose=planar_pose(1.0, 2.0, 0.0), metadata=[KeyValuePair(key=k, value=v) for k, v in left.items()]))

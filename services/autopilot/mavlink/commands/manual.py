@@ -127,12 +127,16 @@ class ManualControl:
         return True
 
     def _drive(self, sticks: Sticks) -> None:
-        """Throttle stick forward = forward; either stick right = right turn."""
+        """Throttle stick forward = forward; either stick right = right turn, of what drives sideways the right one: to the right."""
         body = self._line.facts.file.ground
         assert body is not None
-        now, turn = stamp(self._line.latest.sim_time), _part(sticks.roll + sticks.yaw)
-        linear, angular = sticks.throttle * body.max_linear, -turn * body.max_angular
-        self._line.commands["drive"] = DriveCommand(timestamp=now, linear=linear, angular=angular)
+        aside, turn = (sticks.roll, sticks.yaw) if body.drive.kinematics.goes_sideways else (0.0, _part(sticks.roll + sticks.yaw))
+        self._line.commands["drive"] = DriveCommand(
+            timestamp=stamp(self._line.latest.sim_time),
+            linear=sticks.throttle * body.max_linear,
+            angular=-turn * body.max_angular,
+            lateral=-aside * body.max_linear,
+        )
 
     def _fly(self, sticks: Sticks) -> None:
         """Full stick = the vehicle's limits."""

@@ -11,6 +11,7 @@ from uvf.maths.rotations import FLU_FROM_FRD, from_euler, rotate
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.scaling import I16, whole
 from uvf.runtime.messages.convert import array
+from uvf.runtime.messages.wheels import speeds_of
 
 Message = mav.MAVLink_message | None
 
@@ -18,7 +19,7 @@ ZERO_CELSIUS = 273.15  # K
 GAUSS = 1e-4  # T
 HECTOPASCAL = 100.0  # Pa
 CENTRE, HALF = 1500.0, 500.0  # us of a servo's pulse
-UNUSED = 0
+UNUSED, OUTPUTS = 0, 8
 FRD: Floats = FLU_FROM_FRD.diagonal()  # signs of a vector's components, whatever they are
 
 _INERTIAL = sum(1 << bit for bit in range(6))
@@ -85,7 +86,7 @@ def servo_output(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
         pulses = _wheels(facts, wheels)
     if not pulses:
         return None
-    return mav.MAVLink_servo_output_raw_message(round(t * 1e6) % 2**32, 0, *pulses, *(UNUSED,) * (8 - len(pulses)))
+    return mav.MAVLink_servo_output_raw_message(round(t * 1e6) % 2**32, 0, *pulses, *(UNUSED,) * (OUTPUTS - len(pulses)))
 
 
 def _surfaces(facts: VehicleInfo, asked: SurfaceCommand) -> list[int]:
@@ -102,7 +103,7 @@ def _wheels(facts: VehicleInfo, asked: WheelCommand) -> list[int]:
     if facts.file.ground is None:
         return []
     fastest = facts.file.ground.max_linear / facts.file.ground.drive.wheel_radius
-    return [_pulse(asked.left / fastest), _pulse(asked.right / fastest)]
+    return [_pulse(speed / fastest) for speed in speeds_of(asked)[:OUTPUTS]]
 
 
 def _pulse(part: float) -> int:

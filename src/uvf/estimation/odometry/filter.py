@@ -23,6 +23,7 @@ from uvf.estimation.odometry.states import (
     Noise,
     Step,
 )
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2
 from uvf.models.vehicle.sensors import GnssSensor
@@ -62,7 +63,7 @@ class DriveFilter:
         self.kalman: Kalman = FILTERS[kind](np.zeros(len(variances)), np.diag(variances))
         self._watches = {LEFT: WheelWatch(), RIGHT: WheelWatch()}
         self._still_for = self._doubted_for = 0.0
-        self._turn_rate = 0.0
+        self._turn_rate = self._aside = 0.0
         self.is_unseen = False
         """Set while the scans do not see the motion that the wheels tell."""
         self.doubt: str | None = None
@@ -85,9 +86,9 @@ class DriveFilter:
         return float(self.kalman.P[GYRO_BIAS, GYRO_BIAS]) + self.noise.gyro**2 / WHEEL_PERIOD
 
     @property
-    def speeds(self) -> tuple[float, float]:
-        """Forward speed [m/s] and turn rate [rad/s] of the last step."""
-        return float(self.kalman.x[SPEED]), self._turn_rate
+    def velocity(self) -> Twist:
+        """Of the last step."""
+        return Twist(float(self.kalman.x[SPEED]), self._turn_rate, self._aside)
 
     @property
     def state(self) -> Floats:
@@ -151,7 +152,7 @@ class DriveFilter:
             self._roll(step, turn)
         told = model.told(step, self.track)
         x = self.kalman.x
-        self._turn_rate = model.turn_rate(x, told)
+        self._turn_rate, self._aside = model.turn_rate(x, told), step.ways.aside / step.dt
         noise = model.pose_noise(x, step, self.noise, self._turn_rate * step.dt, self.track)
         self.kalman.move(lambda point: model.moved(point, told), model.moved_jacobian(x, told), noise)
         if step.dt > GAP:
@@ -177,7 +178,7 @@ class DriveFilter:
 
     def _rests(self, step: Step) -> bool:
         """Whether it stands; if so the speed is zero and the gyroscope tells its bias."""
-        self._still_for = self._still_for + step.dt if step.left == step.right == 0.0 else 0.0
+        self._still_for = self._still_for + step.dt if not any(step.ways) else 0.0
         if self._still_for <= AT_REST:
             return False
         n, surely = len(self.kalman.x), self._still_for > SLIDES_ON

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.geodesy import GRAVITY
+from uvf.maths.kinematics import Ways
 
 Floats = NDArray[np.float64]
 
@@ -37,25 +38,25 @@ class Inclination:
         self.state = np.zeros(4)
         """Gravity's parts forward and left, and the biases of the accelerometer there [m/s^2]."""
         self._p = np.diag((STEEP, STEEP, BIAS, BIAS)) ** 2
-        self._speed = self._struck_for = 0.0
+        self._velocity, self._struck_for = np.zeros(2), 0.0
         self._gyro_bias = np.zeros(2)
         self._means: tuple[Floats, Floats] | None = None
 
-    def step(self, dt: float, rate: Floats, force: Floats, ways: tuple[float, float]) -> Tilting:
+    def step(self, dt: float, rate: Floats, force: Floats, ways: Ways) -> Tilting:
         """How gravity's forward part has changed in the last ``dt`` [s].
 
-        rate: (3,) rad/s, force: (3,) m/s^2 in the middle of the axle, both in the base frame; ways: m that the wheels have rolled.
+        rate: (3,) rad/s, force: (3,) m/s^2 in the middle of the axle, both in the base frame; ways: what the wheels have rolled.
         """
-        self._rest(dt, rate, force, ways == (0.0, 0.0))
+        self._rest(dt, rate, force, not any(ways))
         tilting = self._turn(dt, rate)
-        speed = (ways[0] + ways[1]) / (2.0 * dt)
-        accelerated = np.array(((speed - self._speed) / dt, speed * rate[2]))
-        self._speed = speed
+        velocity = np.array(((ways.left + ways.right) / (2.0 * dt), ways.aside / dt))
+        accelerated = (velocity - self._velocity) / dt + rate[2] * np.array((-velocity[1], velocity[0]))
+        self._velocity = velocity
         self._feel(dt, force[:2] - accelerated)
         return tilting
 
-    def seen_from_above(self, ways: tuple[float, float], rate: Floats) -> tuple[tuple[float, float], float]:
-        """Ways of the wheels [m] and turning [rad/s] as they are from above, where the vehicle drives on a slope.
+    def seen_from_above(self, ways: Ways, rate: Floats) -> tuple[Ways, float]:
+        """Ways of the wheels and turning [rad/s] as they are from above, where the vehicle drives on a slope.
 
         rate: (3,) rad/s, base frame. With the vertical (a, b, c) in the base frame a way is shorter by sqrt(1 - a^2), and the heading
         turns at (q b + r c) / (1 - a^2) (Beard and McLain, Small Unmanned Aircraft, eq. 3.3).
@@ -65,7 +66,7 @@ class Inclination:
         upward = sqrt(max(level - aside * aside, 0.0))
         shorter = sqrt(level)
         turning = (float(rate[1]) * aside + float(rate[2]) * upward) / level
-        return (ways[0] * shorter, ways[1] * shorter), turning
+        return Ways(ways.left * shorter, ways.right * shorter, ways.aside * sqrt(1.0 - aside * aside)), turning
 
     def _rest(self, dt: float, rate: Floats, force: Floats, stands: bool) -> None:
         """Learns the gyroscope's biases while the vehicle stands and is not tilted: what is felt stays the same."""

@@ -1,4 +1,4 @@
-"""Motion of a differential drive, with derivatives, for both filters.
+"""Motion of a differential drive, or of one that goes sideways, too, with derivatives, for both filters.
 
 A step has two parts. First what moves the speed: the accelerometer, whose offset follows the slope as ``inclination`` has it; the wheels'
 speeds then correct it. Then the pose moves by that speed and by the gyroscope's turn rate less its bias, along an arc.
@@ -14,20 +14,21 @@ Floats = NDArray[np.float64]
 
 FOLLOWING = 2.0  # m/s per square root of s: how fast the speed changes where no accelerometer tells it
 
-Told = tuple[float, float, float, float, float, float, bool, bool]
-"""dt, left and right way, turn rate, force, track; whether there is a gyroscope and an accelerometer."""
+Told = tuple[float, float, float, float, float, float, bool, bool, float]
+"""dt, left and right way, turn rate, force, track; whether there is a gyroscope and an accelerometer; way to the left."""
 
 
 def told(step: Step, track: float) -> Told:
     """The step and the track [m] as one tuple for the compiled functions."""
     rate, force = step.rate, step.force
-    return step.dt, step.left, step.right, rate or 0.0, force or 0.0, track, rate is not None, force is not None
+    left, right, aside = step.ways
+    return step.dt, left, right, rate or 0.0, force or 0.0, track, rate is not None, force is not None, aside
 
 
 @compiled
 def turn_rate(x: Floats, told: Told) -> float:
     """Turn rate [rad/s] at state ``x`` (n,); by the wheels where there is no gyroscope."""
-    dt, left, right, rate, _, track, gyro, _ = told
+    dt, left, right, rate, _, track, gyro, _, _ = told
     if gyro:
         return float(rate - x[GYRO_BIAS])
     return float((right * (1.0 + x[RIGHT]) - left * (1.0 + x[LEFT])) / (track * dt))
@@ -43,10 +44,12 @@ def mean_speed(x: Floats, told: Told) -> float:
 def moved(x: Floats, told: Told) -> Floats:
     """State (n,) after the pose of ``x`` (n,) has moved along the arc's chord at the mean heading (as ``kinematics.move``)."""
     dt, turn = told[0], turn_rate(x, told) * told[0]
-    chord = mean_speed(x, told) * dt * np.sinc(turn / (2 * np.pi))
+    arc = np.sinc(turn / (2 * np.pi))
+    chord, aside = mean_speed(x, told) * dt * arc, told[8] * arc
+    c, s = np.cos(x[HEADING] + turn / 2), np.sin(x[HEADING] + turn / 2)
     y = x.copy()
-    y[X] += chord * np.cos(x[HEADING] + turn / 2)
-    y[Y] += chord * np.sin(x[HEADING] + turn / 2)
+    y[X] += chord * c - aside * s
+    y[Y] += chord * s + aside * c
     y[HEADING] += turn
     return y
 
@@ -54,29 +57,31 @@ def moved(x: Floats, told: Told) -> Floats:
 @compiled
 def moved_jacobian(x: Floats, told: Told) -> Floats:
     """Derivative (n, n) of ``moved`` at ``x`` (n,)."""
-    dt, left, right, _, _, track, gyro, accel = told
+    dt, left, right, _, _, track, gyro, accel, _ = told
     turn = turn_rate(x, told) * dt
     arc = np.sinc(turn / (2 * np.pi))
-    chord = mean_speed(x, told) * dt * arc
+    chord, aside = mean_speed(x, told) * dt * arc, told[8] * arc
     c, s = np.cos(x[HEADING] + turn / 2), np.sin(x[HEADING] + turn / 2)
     f = np.eye(x.shape[0])
     f[HEADING, GYRO_BIAS] = -dt if gyro else 0.0
     f[HEADING, LEFT], f[HEADING, RIGHT] = (0.0, 0.0) if gyro else (-left / track, right / track)
     for i, along, across in ((X, c, -s), (Y, s, c)):
-        f[i, HEADING] = chord * across
+        f[i, HEADING] = chord * across - aside * along
         f[i, SPEED] = dt * arc * along
         f[i, ACCEL_OFFSET] = 0.5 * dt * dt * arc * along if accel else 0.0
         for j in (GYRO_BIAS, LEFT, RIGHT):
-            f[i, j] = 0.5 * chord * across * f[HEADING, j]
+            f[i, j] = 0.5 * (chord * across - aside * along) * f[HEADING, j]
     return f
 
 
 def pose_noise(x: Floats, step: Step, noise: Noise, turn: float, track: float) -> Floats:
     """Process noise (n, n) of the pose's motion at ``x`` (n,), that of the heading [rad^2]; turn: [rad], track: [m].
 
-    Without a gyroscope the heading is as uncertain as the wheels.
+    Without a gyroscope the heading is as uncertain as the wheels. Only the wheels tell the way to the side.
     """
     q = np.zeros((len(x), len(x)))
+    across = np.array((-np.sin(x[HEADING]), np.cos(x[HEADING])))
+    q[:HEADING, :HEADING] = np.outer(across, across) * (noise.distance**2 * abs(step.ways.aside) + (noise.skid * step.ways.aside) ** 2)
     q[HEADING, HEADING] = noise.turn**2 * abs(turn) + noise.gyro**2 * step.dt
     if step.rate is None:
         q[HEADING, HEADING] += sum(wheel_variance(x, step, noise, turn, track)) / track**2

@@ -11,7 +11,7 @@ from uvf.estimation.kalman import Measured, misfit
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.states import GNSS_X, HEADING, POSE, SPEED
 from uvf.maths.geodesy import LocalTangent
-from uvf.maths.kinematics import twist_between
+from uvf.maths.kinematics import Twist, twist_between
 from uvf.maths.se2 import Pose2, PoseHistory, compose, inverse, transform
 
 Floats = NDArray[np.float64]
@@ -100,13 +100,13 @@ class Satellites:
                 world.doubt_position(float(np.sqrt(self.ratio * variance)))
                 self._taken = t
             return
-        then, now = self._motion(t), world.speeds
+        then = self._motion(t)
         if then is not None:
-            told, changed = fix.velocity, Changed(base_from_then.yaw, then[0] - now[0], then[1])
+            told, changed = fix.velocity, Changed(base_from_then.yaw, then.linear - world.velocity.linear, then.angular, then.lateral)
             world.correct(velocity(world.state, told, changed, self._antenna.arm, max(fix.speed_accuracy, LEAST_SPEED) ** 2), GATE)
 
-    def _motion(self, t: float) -> tuple[float, float] | None:
-        """Speed [m/s] and turn rate [rad/s] of the odometry at ``t`` [s]."""
+    def _motion(self, t: float) -> Twist | None:
+        """Velocity of the odometry at ``t`` [s]."""
         before, after = self._history.at(t - MOMENT), self._history.at(t)
         return twist_between(before, after, MOMENT) if before is not None and after is not None else None
 
@@ -129,11 +129,12 @@ def position(x: Floats, place: Floats, arm: Floats, variance: float) -> Measured
 
 
 class Changed(NamedTuple):
-    """State at a fix against the present one: heading and speed then less those of now, and the turn rate then."""
+    """State at a fix against the present one: heading and speed then less those of now, and turn rate and speed sideways then."""
 
     heading: float  # rad
     speed: float  # m/s
     rate: float  # rad/s
+    aside: float = 0.0  # m/s
 
 
 def velocity(x: Floats, told: tuple[float, float], then: Changed, arm: tuple[float, float], variance: float) -> Measured:
@@ -141,7 +142,7 @@ def velocity(x: Floats, told: tuple[float, float], then: Changed, arm: tuple[flo
 
     arm: [m], of the antenna in the base frame.
     """
-    across, along = then.rate * arm[0], then.speed - then.rate * arm[1]
+    across, along = then.rate * arm[0] + then.aside, then.speed - then.rate * arm[1]
 
     def expected(point: Floats) -> Floats:
         c, s = np.cos(point[HEADING] + then.heading), np.sin(point[HEADING] + then.heading)

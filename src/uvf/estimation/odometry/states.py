@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from uvf.maths.kinematics import Ways
+
 X, Y, HEADING, SPEED, GYRO_BIAS, ACCEL_OFFSET, LEFT, RIGHT, GNSS_X, GNSS_Y = range(10)
 """m, m, rad (not wrapped: a mean of headings is a plain mean), m/s forward, rad/s, m/s^2, and the errors of the wheels' radii as parts
 of them: a wheel has rolled (1 + error) times what its radius says. The last two are the slow errors of satellite positions [m], where
@@ -18,12 +20,21 @@ class Step(NamedTuple):
     """Wheel and inertial readings of the last ``dt`` [s]."""
 
     dt: float
-    left: float  # m, way of each wheel by its nominal radius
-    right: float
+    ways: Ways  # by the nominal radii of the wheels
     rate: float | None = None  # rad/s, mean of the gyroscope about the upward axis
     force: float | None = None  # m/s^2, mean of the accelerometer's forward axis at the middle of the axle
     tilting: float = 0.0  # m/s^3, by which gravity's part of that force changes as the vehicle pitches, and turns on a slope
     tilting_noise: float = 0.0  # m/s^2 per square root of s, 1 sigma of it
+
+    @property
+    def left(self) -> float:
+        """Way of the left wheel [m]."""
+        return self.ways.left
+
+    @property
+    def right(self) -> float:
+        """Way of the right wheel [m]."""
+        return self.ways.right
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from uvf.maths.kinematics import WheelSpeeds
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import rotate
 from uvf.maths.wheels.scrubbing import scrubbing, shared_loads
 from uvf.models.checks.sensor_rules import sensor_faults, sensor_notes
@@ -15,6 +16,7 @@ from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.inertia import whole
 from uvf.models.urdf.robot import Joint, UrdfModel
+from uvf.models.vehicle.drive import DifferentialDriveFile, MecanumFile, OmniFile, SkidSteerFile
 from uvf.models.vehicle.file import GroundBody, VehicleFile
 from uvf.models.yaml_data import BadInput, FileLocation
 
@@ -33,6 +35,14 @@ ROUND = np.column_stack(
 )
 
 
+class CheckedWheel(NamedTuple):
+    """A driven wheel: its joint, its side, and the direction in which it rolls [rad]."""
+
+    joint: Joint
+    side: str
+    rolls_to: float
+
+
 class CheckedBody:
     """A ground vehicle's links and collision shapes, where they are in base_link at rest."""
 
@@ -40,10 +50,13 @@ class CheckedBody:
         self.model, self.ground = model, ground
         self.poses = model.link_poses()
         self.mass = whole(model, self.poses)
-        sides = {"left": ground.drive.left_joints, "right": ground.drive.right_joints}
-        found = {side: [model.joints[name] for name in names] for side, names in sides.items()}
-        self.wheels = {side: [j for j in joints if j.child in self.poses and j.parent in self.poses] for side, joints in found.items()}
-        self.turning = {name for joints in self.wheels.values() for j in joints for name in model.below(j.child)}
+        drive = ground.drive
+        self.wheels = [
+            CheckedWheel(joint, "left" if on_left else "right", rolls_to)
+            for name, on_left, rolls_to in zip(drive.joints, drive.on_left, drive.rolls_to, strict=True)
+            if (joint := model.joints[name]).child in self.poses and joint.parent in self.poses
+        ]
+        self.turning = {name for wheel in self.wheels for name in model.below(wheel.joint.child)}
 
     def collisions(self, names: list[str]) -> list[Solid]:
         """The collision shapes of the links of these names, in base_link."""
@@ -66,8 +79,8 @@ def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
     try:
         return [
             *_base_faults(body),
-            *(line for side, joints in body.wheels.items() for joint in joints for line in _wheel_faults(body, side, joint, ground)),
-            *_axle_faults(body, ground),
+            *(line for wheel in body.wheels for line in _wheel_faults(body, wheel, ground)),
+            *(_omni_faults(body, file.ground.drive, ground) if isinstance(file.ground.drive, OmniFile) else _axle_faults(body, ground)),
             *_speed_faults(file.ground, ground),
             *_outline_faults(body, ground),
             *_balance_faults(body),
@@ -105,8 +118,8 @@ def _base_faults(body: CheckedBody) -> Iterator[str]:
             yield f"{_at(body.model, line)}: link '{solid.name}' reaches {-low * 1000:.0f} mm below the floor; lift its collision"
 
 
-def _wheel_faults(body: CheckedBody, side: str, joint: Joint, ground: FileLocation) -> Iterator[str]:
-    drive = body.ground.drive
+def _wheel_faults(body: CheckedBody, wheel: CheckedWheel, ground: FileLocation) -> Iterator[str]:
+    drive, (joint, side, rolls_to) = body.ground.drive, wheel
     where, what = _at(body.model, joint.line), f"{side} wheel '{joint.name}'"
     solids = body.collisions(list(body.model.below(joint.child)))
     if not solids:
@@ -116,12 +129,14 @@ def _wheel_faults(body: CheckedBody, side: str, joint: Joint, ground: FileLocati
     if abs(low) > max(TOUCH, 0.02 * drive.wheel_radius):
         yield f"{where}: {what} does not touch the floor: its lowest point is at z = {low * 1000:.1f} mm; move its joint"
     pose = body.poses[joint.child]
-    axis = rotate(pose.rotation, joint.axis)
-    if abs(axis[1]) < ALONG:
-        yield f"{where}: {what} turns about {_row(axis)} in base_link; a wheel turns about y"
-    elif axis[1] < 0:
+    axis, forward = rotate(pose.rotation, joint.axis), np.array((np.cos(rolls_to), np.sin(rolls_to), 0.0))
+    turned = f", turned by {rolls_to:.3g}" if rolls_to else ""
+    leftward = float(axis @ (-forward[1], forward[0], 0.0))
+    if abs(leftward) < ALONG:
+        yield f"{where}: {what} turns about {_row(axis)} in base_link; a wheel turns about y{turned}"
+    elif leftward < 0:
         yield f'{where}: {what} would turn backwards: its axis points to the right; turn the sign of <axis xyz="...">'
-    forward = np.array(((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)))
+    forward = np.array((forward, -forward))
     radius = max(float(reach(solid, forward).sum()) for solid in solids) / 2
     if abs(radius - drive.wheel_radius) > SAME * drive.wheel_radius:
         yield f"{ground.at('drive', 'wheel_radius')}: {drive.wheel_radius:g} m, but the {what} of the URDF has a radius of {radius:.4g} m"
@@ -129,7 +144,9 @@ def _wheel_faults(body: CheckedBody, side: str, joint: Joint, ground: FileLocati
 
 def _axle_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:
     """Wheels on the other side, a wrong track, a base_link that does not lie under the middle of all wheels."""
-    centres = {side: [body.poses[joint.child].translation for joint in joints] for side, joints in body.wheels.items()}
+    drive = body.ground.drive
+    assert isinstance(drive, DifferentialDriveFile | SkidSteerFile | MecanumFile)
+    centres = {side: [body.poses[w.joint.child].translation for w in body.wheels if w.side == side] for side in ("left", "right")}
     if not all(centres.values()):
         return
     left, right = (np.mean(centres[side], axis=0) for side in ("left", "right"))
@@ -139,38 +156,62 @@ def _axle_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:
     wrong = [(side, c[1]) for side, sign in (("left", 1), ("right", -1)) for c in centres[side] if sign * c[1] <= 0]
     for side, y in wrong:
         yield f"{ground.at('drive', side)}: the {side} wheel is at y = {y:.3f} m in base_link; left is above zero, right below"
-    drive, track = body.ground.drive, float(left[1] - right[1])
+    track = float(left[1] - right[1])
     if abs(abs(track) - drive.track) > SAME * drive.track:
         yield f"{ground.at('drive', 'track')}: {drive.track:g} m, but the wheels of the URDF are {abs(track):.4g} m apart"
-    if drive.effective_track is None:
-        yield from _off_centre(body, (left + right) / 2, "the middle of the axle is")
+    if isinstance(drive, SkidSteerFile):
+        yield from _scrubbing_faults(body, drive, np.array(centres["left"] + centres["right"]), ground)
     else:
-        yield from _scrubbing_faults(body, np.array(centres["left"] + centres["right"]), ground)
+        yield from _off_centre(
+            body, (left + right) / 2, f"the middle of the {'axle' if isinstance(drive, DifferentialDriveFile) else 'wheels'} is"
+        )
+    if isinstance(drive, MecanumFile):
+        yield from _wheelbase_faults(drive, centres, ground)
+
+
+def _wheelbase_faults(drive: MecanumFile, centres: dict[str, list[Floats]], ground: FileLocation) -> Iterator[str]:
+    for side, (front, rear) in centres.items():
+        between = float(front[0] - rear[0])
+        if between <= 0.0:
+            yield f"{ground.at('drive', side)}: the first wheel is at x = {front[0]:.3f} m, behind the second; name the front wheel first"
+        elif abs(between - drive.wheelbase) > SAME * drive.wheelbase:
+            yield f"{ground.at('drive', 'wheelbase')}: {drive.wheelbase:g} m, but the {side} wheels are {between:.4g} m apart in the URDF"
+
+
+def _omni_faults(body: CheckedBody, drive: OmniFile, ground: FileLocation) -> Iterator[str]:
+    """Wheels that stand elsewhere in the URDF."""
+    for wheel in body.wheels:
+        told, there = drive.wheels[wheel.joint.name], body.poses[wheel.joint.child].translation
+        if np.hypot(told.x - there[0], told.y - there[1]) > max(OFF_CENTRE, SAME * float(np.hypot(told.x, told.y))):
+            place = ground.at("drive", "wheels", wheel.joint.name)
+            yield f"{place}: at ({told.x:.3f}, {told.y:.3f}) m, but in the URDF it stands at ({there[0]:.3f}, {there[1]:.3f}) m"
 
 
 def _speed_faults(body: GroundBody, ground: FileLocation) -> Iterator[str]:
     """Limits that the motors do not reach, straight on or on the spot."""
-    fastest, drive = body.motor.no_load_speed * body.drive.wheel_radius, body.drive.kinematics
+    drive, top = body.drive.kinematics, body.motor.no_load_speed
+    ahead = [Twist(1.0, 0.0), *([Twist(0.0, 0.0, 1.0)] if drive.goes_sideways else [])]
+    fastest, turning = (top / max(abs(w) for twist in twists for w in drive.wheels(twist)) for twists in (ahead, [Twist(0.0, 1.0)]))
     if body.max_linear > fastest:
         yield f"{ground.at('max_linear')}: {body.max_linear:g} m/s, but without load the motors reach {fastest:.3g} m/s"
-    if body.max_angular > (turning := drive.twist(WheelSpeeds(-body.motor.no_load_speed, body.motor.no_load_speed)).angular):
+    if body.max_angular > turning:
         yield f"{ground.at('max_angular')}: {body.max_angular:g} rad/s, but without load the motors reach {turning:.3g} rad/s"
 
 
 def _off_centre(body: CheckedBody, place: Floats, what: str) -> Iterator[str]:
     if np.hypot(place[0], place[1]) > OFF_CENTRE:
-        line = body.wheels["left"][0].line
+        line = body.wheels[0].joint.line
         yield f"{_at(body.model, line)}: {what} at x = {place[0]:.3f}, y = {place[1]:.3f} m; base_link must lie under it"
 
 
-def _scrubbing_faults(body: CheckedBody, centres: Floats, ground: FileLocation) -> Iterator[str]:
+def _scrubbing_faults(body: CheckedBody, drive: SkidSteerFile, centres: Floats, ground: FileLocation) -> Iterator[str]:
     """How wheels that scrub make the vehicle turn, by where they stand and what they carry."""
     if body.mass is None:
         return
     found = scrubbing(centres[:, :2], shared_loads(centres[:, :2], body.mass.com[:2]))
     yield from _off_centre(body, np.array(found.pivot), "with these masses and wheels it turns about a point")
-    told = body.ground.drive.effective_track
-    if told is not None and abs(told - found.track) > SAME * found.track:
+    told = drive.effective_track
+    if abs(told - found.track) > SAME * found.track:
         yield f"{ground.at('drive', 'effective_track')}: {told:g} m, but with these masses and wheels it is {found.track:.4g} m"
 
 
@@ -202,7 +243,7 @@ def _balance_faults(body: CheckedBody) -> Iterator[str]:
 def _margin_notes(body: CheckedBody) -> Iterator[str]:
     supports = _supports(body)
     margin = _margin(supports, body.mass.com[:2]) if supports and body.mass is not None else None
-    if margin is not None and 0 <= margin < LOW_MARGIN * body.ground.drive.track:
+    if margin is not None and 0 <= margin < LOW_MARGIN * body.ground.drive.width:
         yield f"the centre of mass is only {margin * 1000:.0f} mm inside of the supports: it may tip when it accelerates"
 
 
@@ -215,7 +256,7 @@ def _castor_notes(body: CheckedBody) -> Iterator[str]:
 
 def _supports(body: CheckedBody) -> list[Floats]:
     """(2,) m: the wheels, wherever they are, and what else touches the floor; of a shape's underside its corners."""
-    points: list[Floats] = [body.poses[joint.child].translation[:2] for joints in body.wheels.values() for joint in joints]
+    points: list[Floats] = [body.poses[wheel.joint.child].translation[:2] for wheel in body.wheels]
     for solid in body.collisions(body.rest):
         low = -float(reach(solid, DOWN)[0])
         if low <= TOUCH:

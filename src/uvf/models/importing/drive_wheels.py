@@ -1,7 +1,7 @@
 """Which joints drive a vehicle, which way is up and which is forward: guessed from axes, places and names."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.rotations import from_matrix
-from uvf.maths.se3 import Transform, inverse
+from uvf.maths.se3 import Transform, apply, inverse
 from uvf.maths.wheels.scrubbing import Scrubbing, scrubbing, shared_loads
 from uvf.models.importing.robot import Foreign
 from uvf.models.importing.wheel_guess import WheelGuess, may_turn, shapes_below, wheel_on
@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 
 PARALLEL = 0.97
 ALIKE = 0.12  # share by which the radii of a pair may differ, and the tracks of pairs that drive together
+MECANUM = re.compile(r"mecan", re.I)
 CASTORS = ("cast", "swivel", "ball", "skid", "support")
 PASSIVE = re.compile(r"cast[eo]r|swivel|passive|idler|fork|steer|pivot|omni|follow", re.I)
 DRIVEN = re.compile(r"wheel|whl|tire|tyre|ruota|rueda|roue|rad\b|drive|motor|trac", re.I)
@@ -44,7 +45,7 @@ class DriveWheels:
     """The driven wheels, left and right as the vehicle drives, from the front, and the other wheels.
 
     base_from_root: to the floor under the point about which the vehicle turns, x forward, z up; turning_track: track of the two wheels
-    on the axle through it that turn as all of them do [m].
+    on the axle through it that turn as all of them do [m]; kind: of drive, as in vehicle.yaml.
     """
 
     left: tuple[WheelGuess, ...]
@@ -52,6 +53,14 @@ class DriveWheels:
     others: tuple[WheelGuess, ...]
     base_from_root: Transform
     turning_track: float
+    kind: str = "differential"
+
+    @property
+    def wheelbase(self) -> float:
+        """Distance between the foremost and the rearmost wheels' axles [m]."""
+        ends = np.array([wheel.centre for side in (self.left, self.right) for wheel in (side[0], side[-1])])
+        ahead = apply(self.base_from_root, ends)[:, 0]
+        return float(ahead[::2].mean() - ahead[1::2].mean())
 
     @property
     def driven(self) -> tuple[WheelGuess, ...]:
@@ -92,19 +101,30 @@ def find_wheels(foreign: Foreign) -> DriveWheels:
     return _oriented([best, *_more_pairs(best, pairs, foreign)], wheels, foreign)
 
 
+def _has_rollers(foreign: Foreign, wheels: Iterable[WheelGuess]) -> bool:
+    """Whether a drive of four such wheels has rollers: a plugin tells so, or what they, their links or their shapes are called."""
+    links = [foreign.model.links[wheel.joint.child] for wheel in wheels]
+    meshes = [s.mesh.stem for link in links for s in (*link.visuals, *link.collisions) if s.mesh is not None]
+    return foreign.drive.has_rollers or any(MECANUM.search(name) for name in (*meshes, *(link.name for link in links)))
+
+
 def _is_called_wheel(joint: Joint) -> bool:
     return bool(DRIVEN.search(joint.name))
 
 
 def _more_pairs(best: Pair, pairs: list[Pair], foreign: Foreign) -> list[Pair]:
-    """With skid steer: the other pairs of such wheels that cannot be steered, if they are driven, too."""
-    told = {*foreign.drive.left, *foreign.drive.right}
+    """With skid steer: the other pairs of such wheels that cannot be steered, if they are driven, too.
+
+    Wheels with rollers are not steered, even where their forks have joints (KUKA's youBot).
+    """
+    told, slide = {*foreign.drive.left, *foreign.drive.right}, _has_rollers(foreign, best)
     found: list[Pair] = []
     for pair in pairs:
         taken = {w.joint.name for p in (best, *found) for w in p}
         called = _called_driven(pair) or not _called_driven(best)
         drives = all(w.joint.name in told for w in pair) if told else called and not any(PASSIVE.search(n) for n in _names(pair))
-        if drives and not any(w.joint.name in taken or swivels(foreign.model, w.joint) for w in pair) and _alike(best, pair):
+        steered = not slide and any(swivels(foreign.model, w.joint) for w in pair)
+        if drives and not steered and not any(w.joint.name in taken for w in pair) and _alike(best, pair):
             found.append(pair)
     return found
 
@@ -167,17 +187,22 @@ def _oriented(pairs: list[Pair], wheels: list[WheelGuess], foreign: Foreign) -> 
     driven = left + right
     middle, radius = np.mean([w.centre for w in driven], axis=0), float(np.mean([w.radius for w in driven]))
     axes = np.column_stack((forward, np.cross(up, forward), up))
-    turning = _turning(driven, (middle, axes), foreign) if len(pairs) > 1 else Scrubbing(_track(left, right), (0.0, 0.0))
+    kind, turning = _turning(pairs, driven, (middle, axes), foreign)
     root_from_base = Transform(from_matrix(axes), middle + axes @ np.array((*turning.pivot, -radius)))
     if abs(forward[0]) < 0.99 or up[2] < 0.99:
         foreign.notes.add(f"axes turned: forward was {_row(forward)} and up {_row(up)} in the file's root")
-    return DriveWheels(left, right, tuple(w for w in wheels if w not in driven), inverse(root_from_base), turning.track)
+    return DriveWheels(left, right, tuple(w for w in wheels if w not in driven), inverse(root_from_base), turning.track, kind)
 
 
-def _turning(driven: tuple[WheelGuess, ...], frame: tuple[Floats, Floats], foreign: Foreign) -> Scrubbing:
-    """How a vehicle turns with several wheels a side; frame: its middle (3,) [m] and axes (3, 3), columns forward, left, up."""
+def _turning(pairs: list[Pair], driven: tuple[WheelGuess, ...], frame: tuple[Floats, Floats], foreign: Foreign) -> tuple[str, Scrubbing]:
+    """The kind of drive, and how it turns; frame: the wheels' middle (3,) [m] and axes (3, 3), columns forward, left, up."""
     middle, axes = frame
     places = np.array([(wheel.centre - middle) @ axes for wheel in driven])[:, :2]
+    if len(pairs) == 1:
+        return "differential", Scrubbing(float(np.ptp(places[:, 1])), (0.0, 0.0))
+    if len(pairs) == 2 and _has_rollers(foreign, driven):
+        foreign.notes.add("mecanum wheels: rollers at 45 degrees whose axes form an X from above; it drives sideways, too")
+        return "mecanum", Scrubbing(float(np.ptp(places[:, 0]) + np.ptp(places[:, 1])), (0.0, 0.0))
     mass = whole(foreign.model, foreign.model.link_poses())
     loads = shared_loads(places, ((mass.com - middle) @ axes)[:2]) if mass is not None else np.ones(len(places))
     found = scrubbing(places, loads)
@@ -185,7 +210,7 @@ def _turning(driven: tuple[WheelGuess, ...], frame: tuple[Floats, Floats], forei
         f"skid steer: it turns as two wheels do that are {found.track:.3g} m apart, about ({found.pivot[0]:.3f}, {found.pivot[1]:.3f}) m "
         "from the middle of the wheels, where base_link is put"
     )
-    return found
+    return "skid_steer", found
 
 
 def _up(foreign: Foreign, lateral: Floats, wheel: WheelGuess) -> Floats:

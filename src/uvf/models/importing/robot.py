@@ -25,6 +25,9 @@ class ForeignSensor:
     link_from_sensor: Transform = IDENTITY
 
 
+SIDEWAYS = ("mecanum", "planar_move", "planarmove", "omni")
+"""In the names of plugins that drive a robot sideways, too."""
+JOINTS = ("{}joint", "{}frontjoint", "{}rearjoint", "front{}joint", "back{}joint", "rear{}joint")
 LIMITS = {
     "linear": "speed",
     "angular": "turn rate",
@@ -58,13 +61,17 @@ class StatedLimits:
 
 @dataclass(frozen=True)
 class ImportedDrive:
-    """What a plugin for differential drive tells: the joints' names, and track and wheel radius [m] and limits where it gives them."""
+    """What a plugin for a drive tells: the joints' names, and track and wheel radius [m] and limits where it gives them.
+
+    has_rollers: it drives sideways, too.
+    """
 
     left: tuple[str, ...] = ()
     right: tuple[str, ...] = ()
     track: float | None = None
     wheel_radius: float | None = None
     limits: StatedLimits = StatedLimits()
+    has_rollers: bool = False
 
 
 @dataclass
@@ -82,7 +89,7 @@ class Foreign:
             drive = drive_of(plugin)
             if drive is not None and self.drive == ImportedDrive():
                 self.drive = drive
-                self.notes.add("plugin for differential drive: joints and measures taken, the rest dropped", plugin.get("filename") or "")
+                self.notes.add("plugin of the drive: joints and measures taken, the rest dropped", plugin.get("filename") or "")
             elif drive is None:
                 self.notes.add("plugins dropped", plugin.get("filename") or plugin.get("name") or "")
 
@@ -93,15 +100,17 @@ def stated(value: object) -> float | None:
 
 
 def drive_of(plugin: Any) -> ImportedDrive | None:
-    """The joints and measures of a plugin for differential or skid-steer drive, by the names that ROS 1, ROS 2 and Gazebo use."""
+    """The joints and measures of a plugin for a drive, by the names that ROS 1, ROS 2 and Gazebo use."""
     name = f"{plugin.get('filename', '')} {plugin.get('name', '')}".lower()
-    if not any(word in name for word in ("diff", "skid")):
+    has_rollers = any(word in name for word in SIDEWAYS)
+    if not has_rollers and not any(word in name for word in ("diff", "skid")):
         return None
     given = _all(plugin)
     texts = dict(given)
-    left, right = (tuple(v for t, v in given if t in (f"{s}joint", f"{s}frontjoint", f"{s}rearjoint")) for s in ("left", "right"))
+    left, right = (tuple(v for t, v in given if t in [place.format(side) for place in JOINTS]) for side in ("left", "right"))
     diameter, radius = _number(texts.get("wheeldiameter")), _number(texts.get("wheelradius"))
-    return ImportedDrive(left, right, _number(texts.get("wheelseparation")), diameter / 2 if diameter else radius, _limits(texts, plugin))
+    track, limits = _number(texts.get("wheelseparation")), _limits(texts, plugin)
+    return ImportedDrive(left, right, track, diameter / 2 if diameter else radius, limits, has_rollers)
 
 
 def _limits(texts: Mapping[str, str], plugin: Any) -> StatedLimits:

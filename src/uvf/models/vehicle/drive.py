@@ -1,74 +1,251 @@
-"""What moves a ground vehicle: which wheels, where they are, and how the vehicle turns by them."""
+"""What moves a ground vehicle: which wheels, where they are, and how it turns by them. One kind of drive is one type."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any
 
 import msgspec
+from msgspec import Meta
 
-from uvf.maths.kinematics import DifferentialDrive
+from uvf.maths.kinematics import DifferentialDrive, DriveKinematics
+from uvf.maths.wheels.omnidirectional import OmnidirectionalDrive, RollerWheel, mecanum_wheels
 from uvf.models.keys import key, plain
-from uvf.models.quantities import Positive
+from uvf.models.quantities import Angle, Positive
 from uvf.models.yaml_data import BadInput, FileLocation
 
-Wheels = str | list[str]  # not of Name: constraints in such a union end some processes with a crash (msgspec issue 717)
+KIND, DEFAULT = "kind", "differential"
+Joint = Annotated[str, Meta(min_length=1, max_length=80)]
+Coordinate = Annotated[float, Meta(ge=-1e3, le=1e3)]
 
 
-class DriveFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The driven wheels, those of a side at one speed."""
+class DriveFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field=KIND):
+    """What all drives have. ``joints``: of the driven wheels; the order of all that is told wheel by wheel."""
 
-    left: Annotated[Wheels, plain("Joint of the left wheel in the URDF; with skid steer the joints of all left wheels.")]
-    right: Annotated[Wheels, plain("Joint of the right wheel in the URDF; with skid steer the joints of all right wheels.")]
     wheel_radius: Annotated[Positive, key("m", "Radius of the driven wheels; within 3 % of the URDF's.")]
-    track: Annotated[Positive, key("m", "Distance between the contact points of left and right wheels; within 3 % of the URDF's.")]
-    kind: Annotated[
-        Literal["differential", "skid_steer"],
-        plain("`differential` has one driven wheel on each side; `skid_steer` several that cannot be steered and scrub as it turns."),
-    ] = "differential"
-    effective_track: Annotated[
-        Positive | None,
-        key("m", "Skid steer: track of the two wheels that turn as all of them do, scrubbing included; `vehicle check` works it out."),
-    ] = None
 
     @property
-    def left_joints(self) -> tuple[str, ...]:
-        """Names of the left wheels' joints."""
-        return _names(self.left)
-
-    @property
-    def right_joints(self) -> tuple[str, ...]:
-        """Names of the right wheels' joints."""
-        return _names(self.right)
+    def kind(self) -> str:
+        """As in the file."""
+        return str(self.__struct_config__.tag)
 
     @property
     def joints(self) -> tuple[str, ...]:
-        """Names of all driven wheels' joints, those of the left side first."""
-        return self.left_joints + self.right_joints
+        """Names of the driven wheels' joints."""
+        raise NotImplementedError
 
     @property
-    def kinematics(self) -> DifferentialDrive:
+    def on_left(self) -> tuple[bool, ...]:
+        """Of each of them, whether it is a wheel of the left side."""
+        raise NotImplementedError
+
+    @property
+    def channels(self) -> tuple[int, ...]:
+        """Of each of them, the number of the speed that it turns at, and whose counts its encoder's are part of."""
+        return tuple(0 if left else 1 for left in self.on_left)
+
+    @property
+    def holds_at(self) -> tuple[float, ...] | None:
+        """Of wheels with rollers, the direction in which each holds, from that in which it rolls [rad]; None: tyres."""
+        return None
+
+    @property
+    def scrubs(self) -> bool:
+        """Whether wheels slip across when it turns."""
+        return False
+
+    @property
+    def rolls_to(self) -> tuple[float, ...]:
+        """Of each wheel, the direction in which it rolls [rad]; 0 = forward."""
+        return (0.0,) * len(self.joints)
+
+    @property
+    def width(self) -> float:
+        """m, from the leftmost to the rightmost contact point."""
+        raise NotImplementedError
+
+    @property
+    def kinematics(self) -> DriveKinematics:
         """Wheel speeds and motion of the vehicle."""
-        return DifferentialDrive(self.wheel_radius, self.effective_track or self.track)
+        raise NotImplementedError
+
+
+class DifferentialDriveFile(DriveFile, frozen=True, tag=DEFAULT):
+    """`kind: differential`, which may be left out: one driven wheel on each side."""
+
+    left: Annotated[Joint, plain("Joint of the left wheel in the URDF.")]
+    right: Annotated[Joint, plain("Joint of the right wheel in the URDF.")]
+    track: Annotated[Positive, key("m", "Distance between the wheels' contact points; within 3 % of the URDF's.")]
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Left and right."""
+        return self.left, self.right
+
+    @property
+    def on_left(self) -> tuple[bool, ...]:
+        """Left and right."""
+        return True, False
+
+    @property
+    def width(self) -> float:
+        """The track [m]."""
+        return self.track
+
+    @property
+    def kinematics(self) -> DriveKinematics:
+        """Of the two wheels."""
+        return DifferentialDrive(self.wheel_radius, self.track)
+
+
+class SeveralWheels(DriveFile, frozen=True):
+    """Several wheels on each side, none of which can be steered."""
+
+    left: Annotated[list[Joint], plain("Joints of all left wheels in the URDF, from the front.")]
+    right: Annotated[list[Joint], plain("Joints of all right wheels in the URDF, from the front.")]
+    track: Annotated[Positive, key("m", "Distance between the contact points of left and right wheels; within 3 % of the URDF's.")]
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Those of the left side first, from the front."""
+        return (*self.left, *self.right)
+
+    @property
+    def on_left(self) -> tuple[bool, ...]:
+        """The left side first."""
+        return (True,) * len(self.left) + (False,) * len(self.right)
+
+    @property
+    def width(self) -> float:
+        """The track [m]."""
+        return self.track
+
+
+class SkidSteerFile(SeveralWheels, frozen=True, tag="skid_steer"):
+    """`kind: skid_steer`: several wheels on each side, all of a side at one speed, which scrub as it turns."""
+
+    effective_track: Annotated[
+        Positive,
+        key("m", "Track of the two wheels that turn as all of them do, scrubbing included; `vehicle check` works it out."),
+    ]
+
+    @property
+    def scrubs(self) -> bool:
+        """Yes."""
+        return True
+
+    @property
+    def kinematics(self) -> DriveKinematics:
+        """Of the two wheels that turn as all of them do."""
+        return DifferentialDrive(self.wheel_radius, self.effective_track)
+
+
+class MecanumFile(SeveralWheels, frozen=True, tag="mecanum"):
+    """`kind: mecanum`: two wheels on each side with rollers at 45 degrees whose axes form an X from above; it drives sideways, too."""
+
+    wheelbase: Annotated[Positive, key("m", "Distance between the contact points of front and rear wheels; within 3 % of the URDF's.")]
+
+    @property
+    def wheels(self) -> tuple[RollerWheel, ...]:
+        """In the order of the joints."""
+        return mecanum_wheels(self.track, self.wheelbase)
+
+    @property
+    def channels(self) -> tuple[int, ...]:
+        """Each its own."""
+        return tuple(range(4))
+
+    @property
+    def holds_at(self) -> tuple[float, ...] | None:
+        """45 degrees one way or the other [rad]."""
+        return tuple(wheel.roller for wheel in self.wheels)
+
+    @property
+    def kinematics(self) -> DriveKinematics:
+        """Of the four wheels."""
+        return OmnidirectionalDrive(self.wheel_radius, self.wheels)
+
+
+class OmniWheel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where an omni wheel stands and where it rolls to, in base_link; across that its rollers let it slide."""
+
+    x: Annotated[Coordinate, key("m", "Contact point, forward.")]
+    y: Annotated[Coordinate, key("m", "Contact point, left.")]
+    heading: Annotated[Angle, key("rad", "Direction in which it rolls when its joint turns forward; 0 = forward, counter-clockwise.")]
+
+
+class OmniFile(DriveFile, frozen=True, tag="omni"):
+    """`kind: omni`: three or more omni wheels that stand any way; it drives sideways, too."""
+
+    wheels: Annotated[dict[str, OmniWheel], plain("The wheels by their joints in the URDF.")]
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """As in the file."""
+        return tuple(self.wheels)
+
+    @property
+    def on_left(self) -> tuple[bool, ...]:
+        """Those at y > 0."""
+        return tuple(wheel.y > 0.0 for wheel in self.wheels.values())
+
+    @property
+    def channels(self) -> tuple[int, ...]:
+        """Each its own."""
+        return tuple(range(len(self.wheels)))
+
+    @property
+    def holds_at(self) -> tuple[float, ...] | None:
+        """In the direction in which each rolls."""
+        return (0.0,) * len(self.wheels)
+
+    @property
+    def rolls_to(self) -> tuple[float, ...]:
+        """As in the file [rad]."""
+        return tuple(wheel.heading for wheel in self.wheels.values())
+
+    @property
+    def width(self) -> float:
+        """m, from the leftmost to the rightmost one."""
+        sides = [wheel.y for wheel in self.wheels.values()]
+        return max(sides) - min(sides)
+
+    @property
+    def kinematics(self) -> OmnidirectionalDrive:
+        """Of all wheels."""
+        return OmnidirectionalDrive(self.wheel_radius, tuple(RollerWheel(w.x, w.y, w.heading) for w in self.wheels.values()))
+
+
+AnyDrive = DifferentialDriveFile | SkidSteerFile | MecanumFile | OmniFile
+
+
+def with_kind(ground: Any) -> Any:
+    """The plain data of a ``ground`` section with its drive's kind, which may be left out."""
+    drive = ground.get("drive") if isinstance(ground, dict) else None
+    return {**ground, "drive": {KIND: DEFAULT, **drive}} if isinstance(drive, dict) else ground
 
 
 def check_drive(drive: DriveFile, place: FileLocation) -> None:
     """Raises BadInput."""
-    if twice := next((name for name in drive.left_joints if name in drive.right_joints), None):
-        raise BadInput(f"{place.at('right')}: {twice} is a wheel of the left side too; name the right one")
-    if len(drive.left_joints) != len(drive.right_joints):
-        raise BadInput(
-            f"{place.at('right')}: {len(drive.right_joints)} of them, but {len(drive.left_joints)} on the left side; give as many"
-        )
-    for side, names in (("left", drive.left_joints), ("right", drive.right_joints)):
-        if len(set(names)) < len(names):
-            raise BadInput(f"{place.at(side)}: a wheel is named twice")
-        if drive.kind == "differential" and len(names) != 1:
-            raise BadInput(f"{place.at(side)}: {len(names)} wheels, but a differential drive has one on each side; write kind: skid_steer")
-        if drive.kind == "skid_steer" and len(names) < 2:
-            raise BadInput(f"{place.at(side)}: one wheel, but skid steer has several on each side; write kind: differential")
-    if drive.kind == "differential" and drive.effective_track is not None:
-        raise BadInput(f"{place.at('effective_track')}: two wheels do not scrub; leave it out")
-    if drive.kind == "skid_steer" and drive.effective_track is None:
-        raise BadInput(f"{place.at('effective_track')}: is missing; with four wheels under equal loads it is track + wheelbase^2 / track")
+    seen: set[str] = set()
+    for name in drive.joints:
+        if name in seen:
+            raise BadInput(f"{place}: the joint {name} is named twice; each wheel has a joint of its own")
+        seen.add(name)
+    if isinstance(drive, SeveralWheels):
+        _check_sides(drive, place)
+    if isinstance(drive, OmniFile):
+        _check_omni(drive, place)
 
 
-def _names(wheels: Wheels) -> tuple[str, ...]:
-    return (wheels,) if isinstance(wheels, str) else tuple(wheels)
+def _check_sides(drive: SeveralWheels, place: FileLocation) -> None:
+    if len(drive.left) != len(drive.right):
+        raise BadInput(f"{place.at('right')}: {len(drive.right)} of them, but {len(drive.left)} on the left side; give as many")
+    if len(drive.left) < 2:
+        raise BadInput(f"{place.at('left')}: {len(drive.left)} of them; give all wheels of the side, or write kind: {DEFAULT}")
+    if isinstance(drive, MecanumFile) and len(drive.left) != 2:
+        raise BadInput(f"{place.at('left')}: {len(drive.left)} of them; a mecanum drive has a front and a rear wheel on each side")
+
+
+def _check_omni(drive: OmniFile, place: FileLocation) -> None:
+    if len(drive.wheels) < 3:
+        raise BadInput(f"{place.at('wheels')}: {len(drive.wheels)} of them; a vehicle that drives sideways and turns needs three")
+    if not drive.kinematics.is_complete:
+        raise BadInput(f"{place.at('wheels')}: so placed they do not drive it forward, sideways and round, each by itself; check headings")

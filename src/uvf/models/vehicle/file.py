@@ -8,7 +8,7 @@ import msgspec
 from uvf.models.keys import key, plain
 from uvf.models.quantities import Name, NotNegative, PhysicsRate, Positive
 from uvf.models.vehicle.air import AirBody, BatteryPack, check_air, check_battery
-from uvf.models.vehicle.drive import DriveFile, check_drive
+from uvf.models.vehicle.drive import AnyDrive, check_drive
 from uvf.models.vehicle.layers import file_of, fill_vehicle, folders_of
 from uvf.models.vehicle.sensors import Sensors, check_sensors, check_sensors_of_aircraft
 from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
@@ -34,7 +34,7 @@ class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A ground vehicle: its URDF, its drive and its limits."""
 
     urdf: Annotated[Name, plain("URDF or xacro file in the vehicle's folder.")]
-    drive: Annotated[DriveFile, plain("The driven wheels and how the vehicle turns by them.")]
+    drive: Annotated[AnyDrive, plain("The driven wheels and how the vehicle turns by them; its `kind` decides which keys it has.")]
     radius: Annotated[
         Positive, key("m", "Radius of the circle about base_link that holds the whole body; the planner keeps it from obstacles.")
     ]

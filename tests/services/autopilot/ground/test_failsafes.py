@@ -12,6 +12,7 @@ from services.autopilot.ground.failsafes import ACTIONS, GROUND_RULES, GroundFai
 from services.autopilot.ground.fence import MARGIN, GroundPose, stops
 from services.autopilot.ground.params import Choice, GroundAutopilotParams
 from tests.services.autopilot.ground.test_service import BODY, Bench
+from uvf.maths.kinematics import Twist
 from uvf.maths.zones import Disc, Region
 from uvf.models.mission.fence import Fencing
 from uvf.models.scenario import ROOT
@@ -56,9 +57,12 @@ def test_it_stops_before_the_fence_in_every_mode_and_may_turn_back(mode, source)
 
 def test_only_what_leads_nearer_is_stopped():
     edge = GroundPose(2.95, 0.0, 0.0)
-    assert stops(DISC, edge, 0.2, KEEP) and not stops(DISC, edge, -0.2, KEEP)
-    assert not stops(DISC, GroundPose(0.0, 0.0, 0.0), 0.5, KEEP)
-    assert not stops(DISC, GroundPose(2.95, 0.0, math.pi), 0.2, KEEP)
+    assert stops(DISC, edge, Twist(0.2, 0.0), KEEP) and not stops(DISC, edge, Twist(-0.2, 0.0), KEEP)
+    assert not stops(DISC, edge, Twist(0.0, 1.0), KEEP)
+    aside = GroundPose(2.95, 0.0, -math.pi / 2)
+    assert stops(DISC, aside, Twist(0.0, 0.0, 0.2), KEEP) and not stops(DISC, aside, Twist(0.0, 0.0, -0.2), KEEP)
+    assert not stops(DISC, GroundPose(0.0, 0.0, 0.0), Twist(0.5, 0.0), KEEP)
+    assert not stops(DISC, GroundPose(2.95, 0.0, math.pi), Twist(0.2, 0.0), KEEP)
 
 
 def test_missions_and_fences_that_do_not_go_together_are_refused():

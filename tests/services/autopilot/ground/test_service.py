@@ -1,6 +1,7 @@
 """The ground autopilot step by step: nothing moves that should not, and it says why."""
 
 import pytest
+from msgspec import structs
 
 from schemas.messages import (
     ArmRequest,
@@ -26,14 +27,14 @@ from services.autopilot.ground.service import GroundAutopilot
 from tests.runtime.stepping import recall, stepped
 from tests.services.live_params import all_settable_are_read
 from tests.stops import ENGAGED, RELEASED
-from uvf.models.vehicle.drive import DriveFile
+from uvf.models.vehicle.drive import DifferentialDriveFile, MecanumFile
 from uvf.models.vehicle.file import GroundBody, Motor
 from uvf.runtime.messages.convert import planar_pose, stamp
 from uvf.runtime.state.stop_all import StopStatus
 
 BODY = GroundBody(
     urdf="x.urdf",
-    drive=DriveFile(left="l", right="r", wheel_radius=0.05, track=0.2),
+    drive=DifferentialDriveFile(left="l", right="r", wheel_radius=0.05, track=0.2),
     radius=0.15,
     max_linear=0.5,
     max_angular=2.0,
@@ -50,8 +51,8 @@ NOTHING_ASKED = {name: [] for name in GroundAutopilot.requests}
 class Bench:
     """Steps the service at 50 Hz, keeping commands fresh, and remembers what it last said."""
 
-    def __init__(self, begins=True, items=()):
-        self.service = GroundAutopilot(BODY, (3.0, 4.0), (begins, begins, list(items)), 7, GroundAutopilotParams())
+    def __init__(self, begins=True, items=(), body=BODY):
+        self.service = GroundAutopilot(body, (3.0, 4.0), (begins, begins, list(items)), 7, GroundAutopilotParams())
         self.t = 0.0
         self.said = {}
         self.events = []
@@ -92,6 +93,23 @@ def test_turning_left_drives_the_right_wheel():
         bench.step(planner=DriveCommand(timestamp=stamp(0.02 * i), angular=1.0))
     assert bench.said["wheels"].right == pytest.approx(2.0)
     assert bench.said["wheels"].left == pytest.approx(-2.0)
+
+
+def test_sideways_each_wheel_has_a_speed_of_its_own():
+    drive = MecanumFile(left=["a", "b"], right=["c", "d"], wheel_radius=0.05, track=0.2, wheelbase=0.2)
+    bench = Bench(body=structs.replace(BODY, drive=drive))
+    for i in range(60):
+        bench.step(planner=DriveCommand(timestamp=stamp(0.02 * i), lateral=1.0))
+    assert list(bench.said["wheels"].each) == pytest.approx([-10.0, 10.0, 10.0, -10.0])  # at the limit of 0.5 m/s
+    assert bench.said["status"].throttle == pytest.approx(1.0)
+
+
+def test_who_cannot_drive_sideways_says_so_once_and_drives_on():
+    bench = Bench()
+    for i in range(60):
+        bench.step(planner=DriveCommand(timestamp=stamp(0.02 * i), linear=0.3, lateral=0.4))
+    assert bench.speed == pytest.approx(0.3) and not bench.said["wheels"].each
+    assert bench.events.count("sideways velocity of planner left out") == 1
 
 
 def test_a_stale_command_stops_within_half_a_second_and_the_ramp():

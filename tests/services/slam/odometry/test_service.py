@@ -211,7 +211,7 @@ def test_the_quality_comes_twice_a_second_and_knows_whether_scans_are_matched():
 
 @pytest.mark.parametrize("scales", ["x", "1 1", "nan 1 1", "9 9 9", "1 1 1 1"])
 def test_scales_left_by_somebody_else_are_not_taken_up_blindly(scales):
-    left = {"left_ticks": "0", "right_ticks": "0", "gyro_bias": "0.0", SCALES: scales}
+    left = {"wheel_ticks": "0 0", "gyro_bias": "0.0", SCALES: scales}
     bench = Bench()
     metadata = [KeyValuePair(key=k, value=v) for k, v in left.items()]
     recall(bench.service, odometry=Odometry(metadata=metadata, pose_covariance=[-1.0] * 36))
