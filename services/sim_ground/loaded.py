@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from services.sim_ground.motor import WheelMotor
 from services.sim_ground.treads import Treads
-from uvf.models.vehicle.drive import DriveFile
 
 Floats = NDArray[np.float64]
 
@@ -19,7 +18,9 @@ class LoadedVehicle:
     """A vehicle inside the engine, whose own frame is the centre of mass: position (3,) m and orientation wxyz in base_link."""
 
     index: int
-    drive: DriveFile
+    on_left: tuple[bool, ...]
+    channels: tuple[int, ...]
+    """Of each driven wheel, as its drive has them."""
     wheels: tuple[int, ...]
     """Joints of the driven wheels, in the order of the drive."""
     motors: tuple[WheelMotor, ...]
@@ -35,13 +36,12 @@ class LoadedVehicle:
 
     def by_side(self, sides: tuple[float, float]) -> list[float]:
         """What holds for the left and the right side, wheel by wheel."""
-        return [sides[0] if is_left else sides[1] for is_left in self.drive.on_left]
+        return [sides[0] if is_left else sides[1] for is_left in self.on_left]
 
     def by_wheel(self, speeds: Sequence[float]) -> list[float]:
         """Speeds of the drive's channels [rad/s] wheel by wheel; 0 where there are not as many as it has, or one is no number."""
-        channels = self.drive.channels
-        are_right = len(speeds) == max(channels) + 1 and all(map(isfinite, speeds))
-        return [speeds[channel] if are_right else 0.0 for channel in channels]
+        are_right = len(speeds) == max(self.channels) + 1 and all(map(isfinite, speeds))
+        return [speeds[channel] if are_right else 0.0 for channel in self.channels]
 
 
 @dataclass(frozen=True)

@@ -74,15 +74,16 @@ class BulletWorld:
     def _load(self, name: str, vehicle: BodyPlacement) -> LoadedVehicle:
         index = self.engine.load(vehicle.urdf)
         self._bodies.names[index] = name
-        joints, friction = self.engine.joints(index), vehicle.body.friction
-        wheels = tuple(joints[name] for name in vehicle.body.drive.joints)
+        joints, friction, drive = self.engine.joints(index), vehicle.body.friction, vehicle.body.drive
+        wheels = tuple(joints[name] for name in drive.joints)
         self._set_friction(index, friction, wheels, [j for j in joints.values() if j not in wheels])
         treads = self._treads(index, vehicle.body, wheels)
         com_in_base = self.engine.centre_of_mass(index)
         soles = self._soles(index, vehicle, com_in_base)
         self._place(index, vehicle, com_in_base)
         motors = tuple(WheelMotor(vehicle.body.motor, 1 / self.rate) for _ in wheels)
-        return LoadedVehicle(index, vehicle.body.drive, wheels, motors, com_in_base, max(friction.mu, friction.mu2), treads, soles)
+        most = max(friction.mu, friction.mu2)
+        return LoadedVehicle(index, drive.on_left, drive.channels, wheels, motors, com_in_base, most, treads, soles)
 
     def _soles(self, index: int, vehicle: BodyPlacement, com_in_base: tuple[Floats, Floats]) -> frozenset[int]:
         """The links with which it stands on a level floor."""

@@ -75,7 +75,7 @@ def drive(body: GroundBody, urdf: Path, wanted: Drive) -> Driven:
     before = world.state("one").wheel_angles
     for n in range(round((wanted.seconds + REST) / DT)):
         asked = wanted.twist if n * DT < wanted.seconds else Twist(0.0, 0.0)
-        command = ramp.lead(Twist(*asked), DT)
+        command = ramp.lead(asked, DT)
         world.advance({"one": wheels.wheels(command)}, DT)
         angles = world.state("one").wheel_angles
         turned = WheelSpeeds(angles[0] - before[0], angles[1] - before[1])

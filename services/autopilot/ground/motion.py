@@ -7,7 +7,7 @@ import numpy as np
 
 from schemas.messages import Imu, WheelTicks
 from uvf.maths.filters import LowPass
-from uvf.maths.kinematics import DriveKinematics, Twist
+from uvf.maths.kinematics import DriveKinematics
 from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.messages.wheels import counts_of
 
@@ -24,7 +24,7 @@ class WheelSpeedometer:
     """Low-pass filtered wheel speeds [m/s] from encoder ticks."""
 
     def __init__(self, drive: DriveKinematics) -> None:
-        self._speeds = [LowPass(LAG) for _ in drive.wheels(Twist(0.0, 0.0))]
+        self._speeds = [LowPass(LAG) for _ in range(drive.channels)]
         self.travelled = 0.0
         """m, by the one that went furthest, since the start."""
         self._drive = drive
@@ -66,11 +66,12 @@ class StuckDetector:
     ``stuck_for`` [s]: how long they have; it does not change while no motion is commanded.
     """
 
-    def __init__(self, wheels: WheelSpeedometer) -> None:
+    def __init__(self, wheels: WheelSpeedometer, channels: int) -> None:
+        """channels: of the drive."""
         self.stuck_for = 0.0
         self.how = ""
         self._wheels = wheels
-        self._asked: list[LowPass] = []
+        self._asked = [LowPass(LAG) for _ in range(channels)]
         self._ahead = LowPass(SPEED_LAG)
         self._rolls = LowPass(SPEED_LAG)
         self._well = 0.0
@@ -85,7 +86,6 @@ class StuckDetector:
         asked: commanded rim speeds by the drive's channels [m/s]; speed: forward, as estimated [m/s]; None: unknown.
         """
         slips = self._slips(speed, dt)
-        self._asked = self._asked or [LowPass(LAG) for _ in asked]
         late = [lag.step(speed, dt) for lag, speed in zip(self._asked, asked, strict=True)]  # as late as what is measured
         if not (turning := self._wheels.speeds) or max(map(abs, asked)) < ASKED:
             return

@@ -77,8 +77,10 @@ class GroundFailsafeMonitor:
         self._keep = body.radius, body.max_linear_acceleration
         self._link = LinkWatch()
         self._times = {"pose_age": 0.0, "setpoint_age": 0.0}
-        self._wheels = WheelSpeedometer(body.drive.kinematics)
-        self._grip, self._tilt, self._sight = StuckDetector(self._wheels), TiltEstimate(looks.imu_rpy), SensorWatch(looks.sweeping)
+        drive = body.drive.kinematics
+        self._wheels = WheelSpeedometer(drive)
+        self._grip, self._tilt = StuckDetector(self._wheels, drive.channels), TiltEstimate(looks.imu_rpy)
+        self._sight = SensorWatch(looks.sweeping)
         self._edges = EdgeWatch(looks.floor)
         self._fenced = self._driven = self._edged = False
         self.is_outside = False

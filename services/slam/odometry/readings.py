@@ -7,7 +7,7 @@ from schemas.messages import Gnss, Imu, WheelTicks
 from uvf.estimation.odometry.inclination import Inclination
 from uvf.estimation.odometry.satellites import SatelliteFix
 from uvf.estimation.odometry.states import Step
-from uvf.maths.kinematics import Twist, Ways
+from uvf.maths.kinematics import Ways
 from uvf.maths.rotations import from_euler, matrix
 from uvf.models.vehicle.file import GroundBody
 from uvf.models.vehicle.sensors import Mount
@@ -27,7 +27,6 @@ class Readings:
     def __init__(self, body: GroundBody, imu: Mount | None) -> None:
         mount = imu or Mount()
         self._drive, self._fastest = body.drive.kinematics, body.max_linear
-        self._channels = len(self._drive.wheels(Twist(0.0, 0.0)))
         self._body_from_imu: Floats = matrix(from_euler(*mount.rpy))
         self._arm = mount.xyz
         self._waiting: list[Imu] = []
@@ -51,7 +50,7 @@ class Readings:
         if last is None or dt <= 0.0 or not 0.0 < wheels.radians_per_tick <= 2 * np.pi:
             return None
         now_counts, counts = counts_of(wheels), counts_of(last)
-        if not len(now_counts) == len(counts) == self._channels:
+        if not len(now_counts) == len(counts) == self._drive.channels:
             return None
         ways = self._drive.ways([(b - a) * wheels.radians_per_tick for a, b in zip(counts, now_counts, strict=True)])
         if max(map(abs, ways)) > JUMP * self._fastest * dt + self.resolution:

@@ -53,6 +53,11 @@ class DriveKinematics(Protocol):
         ...
 
     @property
+    def channels(self) -> int:
+        """How many speeds drive it."""
+        ...
+
+    @property
     def goes_sideways(self) -> bool:
         """Whether it can move to the side without turning."""
         ...
@@ -76,6 +81,11 @@ class DifferentialDrive:
 
     wheel_radius: float
     track: float
+
+    @property
+    def channels(self) -> int:
+        """One a side."""
+        return 2
 
     @property
     def goes_sideways(self) -> bool:

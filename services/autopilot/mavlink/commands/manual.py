@@ -127,7 +127,7 @@ class ManualControl:
         return True
 
     def _drive(self, sticks: Sticks) -> None:
-        """Throttle stick forward = forward; either stick right = right turn, of what drives sideways the right one: to the right."""
+        """Throttle stick forward = forward; either stick right = right turn. Roll moves a vehicle to the right that can drive sideways."""
         body = self._line.facts.file.ground
         assert body is not None
         aside, turn = (sticks.roll, sticks.yaw) if body.drive.kinematics.goes_sideways else (0.0, _part(sticks.roll + sticks.yaw))

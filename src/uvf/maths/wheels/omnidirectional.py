@@ -69,6 +69,11 @@ class OmnidirectionalDrive:
         return len(self.placed) >= 3 and bool(strengths[0] < WORST * strengths[-1])
 
     @property
+    def channels(self) -> int:
+        """One a wheel."""
+        return len(self.placed)
+
+    @property
     def goes_sideways(self) -> bool:
         """Yes."""
         return True
