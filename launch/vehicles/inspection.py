@@ -14,7 +14,6 @@ from uvf.models.urdf.model import read_urdf
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.urdf.rules import model_faults, wheel_faults
 from uvf.models.vehicle.air import AirBody
-from uvf.models.vehicle.drive import with_kind
 from uvf.models.vehicle.file import GroundBody, VehicleFile, load_vehicle
 from uvf.models.vehicle.layers import file_of, folders_of
 from uvf.models.vehicle.sensors import Sensors
@@ -80,7 +79,7 @@ def _section_faults(folder: Path) -> Iterator[str]:
         if isinstance(value, dict) and ("preset" in value or "variant_of" in data):
             continue  # not whole without what it refers to
         try:
-            convert(with_kind(value) if keys == ("ground",) else value, type_, str(path), keys)
+            convert(value, type_, str(path), keys)
         except BadInput as error:
             yield str(error)
 

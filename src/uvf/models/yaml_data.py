@@ -173,8 +173,25 @@ def _data(text: str) -> Any:
 
 def convert(data: Any, type_: type[T], file: str, keys: tuple[Key, ...] = ()) -> T:
     """Converts plain data, which came from ``keys`` of ``file``, into ``type_``. Raises BadInput."""
+    data = _with_kinds(data, type_)
     _check(data, type_, FileLocation(file, keys))
     return msgspec.convert(data, type_)
+
+
+def _with_kinds(data: Any, hint: Any) -> Any:
+    """The data of a struct, and of the structs in it, with each kind that may be left out: it is the first of its union."""
+    bare = get_args(hint)[0] if get_origin(hint) is Annotated else hint
+    if not isinstance(data, dict):
+        return data
+    if kinds := _kinds(bare):
+        data = {_tag_field(kinds): next(iter(kinds)), **data}
+        bare = kinds.get(str(data[_tag_field(kinds)]))
+    elif get_origin(bare) in (Union, UnionType):
+        return _with_kinds(data, next(a for a in get_args(bare) if a is not type(None)))
+    if not (isinstance(bare, type) and issubclass(bare, msgspec.Struct)):
+        return data
+    hints = hints_of(bare)
+    return {key: _with_kinds(value, hints[key]) if key in hints else value for key, value in data.items()}
 
 
 def nearest(name: str, known: Iterable[str], most: int = LISTED) -> str:
@@ -215,18 +232,26 @@ def _check(data: Any, hint: Any, place: FileLocation) -> None:
 
 def _of_kind(data: Any, hint: Any, place: FileLocation) -> Any:
     """Of a union of structs that one key tells apart (msgspec's tag), the one that this key names; any other type as it is."""
-    bare = get_args(hint)[0] if get_origin(hint) is Annotated else hint
-    if get_origin(bare) not in (Union, UnionType) or not isinstance(data, dict):
+    kinds = _kinds(get_args(hint)[0] if get_origin(hint) is Annotated else hint)
+    if not kinds or not isinstance(data, dict):
         return hint
-    structs = [kind for kind in get_args(bare) if isinstance(kind, type) and issubclass(kind, msgspec.Struct)]
-    kinds = {str(kind.__struct_config__.tag): kind for kind in structs}
-    if len(kinds) < 2:
-        return hint
-    key = str(next(iter(kinds.values())).__struct_config__.tag_field)
+    key = _tag_field(kinds)
     named = str(data.get(key))
     if named not in kinds:
         raise BadInput(f"{place.at(key)}: no '{named}' here; {nearest(named, kinds)}")
     return kinds[named]
+
+
+def _kinds(bare: Any) -> dict[str, type[msgspec.Struct]]:
+    """The structs of a union that a key tells apart, by what it says; empty for any other type."""
+    if get_origin(bare) not in (Union, UnionType):
+        return {}
+    structs = [kind for kind in get_args(bare) if isinstance(kind, type) and issubclass(kind, msgspec.Struct)]
+    return {str(kind.__struct_config__.tag): kind for kind in structs} if len(structs) > 1 else {}
+
+
+def _tag_field(kinds: dict[str, type[msgspec.Struct]]) -> str:
+    return str(next(iter(kinds.values())).__struct_config__.tag_field)
 
 
 def _parts(data: Any, hint: Any, place: FileLocation) -> Iterator[tuple[Any, Any, Any]]:

@@ -1,6 +1,6 @@
 """What moves a ground vehicle: which wheels, where they are, and how it turns by them. One kind of drive is one type."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import msgspec
 from msgspec import Meta
@@ -214,12 +214,7 @@ class OmniFile(DriveFile, frozen=True, tag="omni"):
 
 
 AnyDrive = DifferentialDriveFile | SkidSteerFile | MecanumFile | OmniFile
-
-
-def with_kind(ground: Any) -> Any:
-    """The plain data of a ``ground`` section with its drive's kind, which may be left out."""
-    drive = ground.get("drive") if isinstance(ground, dict) else None
-    return {**ground, "drive": {KIND: DEFAULT, **drive}} if isinstance(drive, dict) else ground
+"""The first is the one that is meant where no kind is given."""
 
 
 def check_drive(drive: DriveFile, place: FileLocation) -> None:

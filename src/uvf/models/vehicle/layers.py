@@ -9,7 +9,6 @@ import numpy as np
 from uvf.maths.rotations import from_euler, to_euler
 from uvf.maths.se3 import Transform, compose
 from uvf.models.urdf.model import load_urdf
-from uvf.models.vehicle.drive import with_kind
 from uvf.models.vehicle.sensor_presets import fill_presets
 from uvf.models.yaml_data import BadInput, FileLocation, nearest, read_yaml
 
@@ -24,8 +23,6 @@ def fill_vehicle(data: Any, place: FileLocation) -> Any:
     folders = folders_of(Path(place.file).parent)
     for folder in folders[1:]:
         data = merged(read_yaml(folder / "vehicle.yaml"), data)
-    if "ground" in data:
-        data = {**data, "ground": with_kind(data["ground"])}
     return _fill_links(fill_presets(data, place), folders, place)
 
 
