@@ -4,7 +4,7 @@ import numpy as np
 
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.states import Noise, Step
-from uvf.maths.kinematics import Ways
+from uvf.maths.kinematics import WheelTravel
 from uvf.maths.se2 import IDENTITY
 from uvf.slam.localization import known_map
 from uvf.slam.localization.localizer import Localizer
@@ -45,4 +45,4 @@ def warm_up_localization() -> None:
 
 
 def _warm_up_odometry() -> None:
-    DriveFilter("ekf", Noise(), 0.2).step(Step(0.02, Ways(0.0, 0.0)))
+    DriveFilter("ekf", Noise(), 0.2).step(Step(0.02, WheelTravel(0.0, 0.0)))

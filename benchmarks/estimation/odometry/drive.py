@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.estimation.odometry.states import Step
-from uvf.maths.kinematics import Twist, Ways, move
+from uvf.maths.kinematics import Twist, WheelTravel, move
 from uvf.maths.se2 import IDENTITY, Pose2
 
 Floats = NDArray[np.float64]
@@ -89,7 +89,7 @@ def drive(world: World, seed: int) -> list[Moment]:
         turning = world.gyro_turn * np.sqrt(abs(mean.angular) * DT) + world.gyro * np.sqrt(DT)
         rate = mean.angular + bias + turning / DT * rng.standard_normal()
         force = (after.linear - before.linear) / DT + offset + world.accel / np.sqrt(DT) * rng.standard_normal()
-        step = Step(DT, Ways(left, right), float(rate), float(force)) if world.has_imu else Step(DT, Ways(left, right))
+        step = Step(DT, WheelTravel(left, right), float(rate), float(force)) if world.has_imu else Step(DT, WheelTravel(left, right))
         moments.append(Moment(k * DT, step, pose, after))
         before = after
     return moments

@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.planning.barn.jackal import TRACK, TRACK_FACTOR, WHEEL_RADIUS
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.states import Noise, Step
-from uvf.maths.kinematics import Twist, Ways
+from uvf.maths.kinematics import Twist, WheelTravel
 from uvf.maths.se2 import Pose2
 
 GYRO_NOISE = 0.005 * np.sqrt(0.02)  # rad/s per root of Hz
@@ -52,4 +52,4 @@ class Odometry:
         noise = GYRO_NOISE / np.sqrt(self._dt) * float(self._rng.standard_normal())
         rate = (yaw - self._yaw) / self._dt + self._bias + noise
         self._ticks, self._yaw = ticks, yaw
-        self._filter.step(Step(self._dt, Ways(left, right), float(rate)))
+        self._filter.step(Step(self._dt, WheelTravel(left, right), float(rate)))

@@ -7,7 +7,7 @@ from schemas.messages import Gnss, Imu, WheelTicks
 from uvf.estimation.odometry.inclination import Inclination
 from uvf.estimation.odometry.satellites import SatelliteFix
 from uvf.estimation.odometry.states import Step
-from uvf.maths.kinematics import Ways
+from uvf.maths.kinematics import WheelTravel
 from uvf.maths.rotations import from_euler, matrix
 from uvf.models.vehicle.file import GroundBody
 from uvf.models.vehicle.sensors import Mount
@@ -52,14 +52,14 @@ class Readings:
         now_counts, counts = counts_of(wheels), counts_of(last)
         if not len(now_counts) == len(counts) == self._drive.channels:
             return None
-        ways = self._drive.ways([(b - a) * wheels.radians_per_tick for a, b in zip(counts, now_counts, strict=True)])
+        ways = self._drive.travel([(b - a) * wheels.radians_per_tick for a, b in zip(counts, now_counts, strict=True)])
         if max(map(abs, ways)) > JUMP * self._fastest * dt + self.resolution:
             return None
         if dt > MAX_GAP or not len(rates):
             return Step(dt, ways)
         return self._step(dt, ways, rates.mean(axis=0), forces.mean(axis=0))
 
-    def _step(self, dt: float, ways: Ways, rate: Floats, force: Floats) -> Step:
+    def _step(self, dt: float, ways: WheelTravel, rate: Floats, force: Floats) -> Step:
         """rate, force: (3,) means of the inertial unit, in its axes; what is no number or no vehicle survives is left out.
 
         The accelerometer feels the turning, too, where it sits off the axle, or the vehicle drives sideways.

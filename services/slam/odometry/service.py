@@ -152,7 +152,7 @@ class OdometryService(Service):
         return [self._filter] if self._satellites is None else [self._filter, self._satellites.drive]
 
     def _move(self, t: float, told: Step) -> None:
-        step = told._replace(ways=told.ways._replace(left=told.left * self._scales.left, right=told.right * self._scales.right))
+        step = told._replace(travel=told.travel._replace(left=told.left * self._scales.left, right=told.right * self._scales.right))
         self._driven += abs(step.left + step.right) / 2
         for drive in self._drives:
             drive.is_unseen = self._unseen is not None

@@ -24,7 +24,7 @@ class Twist(NamedTuple):
     lateral: float = 0.0
 
 
-class Ways(NamedTuple):
+class WheelTravel(NamedTuple):
     """What a vehicle's wheels have rolled: left and right as a differential drive, and sideways to the left [m]."""
 
     left: float
@@ -70,8 +70,8 @@ class DriveKinematics(Protocol):
         """Speeds [rad/s] for a commanded velocity of the body."""
         ...
 
-    def ways(self, turned: Sequence[float]) -> Ways:
-        """Ways of the two wheels of ``track`` that would turn it as much, and sideways, by wheels that have turned so far [rad]."""
+    def travel(self, turned: Sequence[float]) -> WheelTravel:
+        """Of the two wheels of ``track`` that would turn it as much, and sideways, by wheels that have turned so far [rad]."""
         ...
 
 
@@ -97,10 +97,10 @@ class DifferentialDrive:
         r, (left, right) = self.wheel_radius, wheels
         return Twist(r * (right + left) / 2, r * (right - left) / self.track)
 
-    def ways(self, turned: Sequence[float]) -> Ways:
-        """Ways of the left and the right wheel, by wheels that have turned so far [rad]."""
+    def travel(self, turned: Sequence[float]) -> WheelTravel:
+        """Of the left and the right wheel, by wheels that have turned so far [rad]."""
         left, right = turned
-        return Ways(left * self.wheel_radius, right * self.wheel_radius)
+        return WheelTravel(left * self.wheel_radius, right * self.wheel_radius)
 
     def wheels(self, twist: Twist) -> WheelSpeeds:
         """Inverse kinematics: the wheel speeds for a commanded body velocity."""

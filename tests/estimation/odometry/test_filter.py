@@ -9,7 +9,7 @@ from scipy.stats import chi2
 from benchmarks.estimation.odometry.drive import DT, TRACK, World, drive
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.states import LEFT, RIGHT, Noise, Step
-from uvf.maths.kinematics import Twist, Ways, move
+from uvf.maths.kinematics import Twist, WheelTravel, move
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY
 
@@ -23,7 +23,7 @@ def begun(kind="ekf", noise=None):
 
 def wheels(linear, angular, rate=None, force=None):
     side = angular * TRACK / 2
-    return Step(DT, Ways((linear - side) * DT, (linear + side) * DT), rate, force)
+    return Step(DT, WheelTravel((linear - side) * DT, (linear + side) * DT), rate, force)
 
 
 def driven(one, moments):
@@ -186,7 +186,8 @@ def test_an_accelerometer_that_is_knocked_askew_does_not_run_away_with_it(kind, 
     for k in range(1500):
         driven_at, quiver = min(0.01 * k, 1.0) * speed, 1e-4 * (-1) ** k if k > 100 else 0.0
         force = (speed / 100 / DT if k < 100 else 0.0) + (offset if k >= 500 else 0.0)
-        one.step(wheels(driven_at, 0.0, rate=0.0, force=force)._replace(ways=Ways(driven_at * DT + quiver, driven_at * DT - quiver)))
+        travel = WheelTravel(driven_at * DT + quiver, driven_at * DT - quiver)
+        one.step(wheels(driven_at, 0.0, rate=0.0, force=force)._replace(travel=travel))
     assert one.doubt is None
     assert one.velocity.linear == pytest.approx(speed, abs=0.02)
     assert one.pose.x == pytest.approx(speed * (1500 - 50) * DT, abs=0.5 * abs(offset) + 0.5)

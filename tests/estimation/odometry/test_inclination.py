@@ -8,7 +8,7 @@ from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.inclination import Inclination
 from uvf.estimation.odometry.states import Noise, Step
 from uvf.maths.geodesy import GRAVITY
-from uvf.maths.kinematics import Ways
+from uvf.maths.kinematics import WheelTravel
 from uvf.maths.rotations import from_euler, matrix
 
 BIAS = np.array((0.08, -0.06, 0.02))  # m/s^2
@@ -26,7 +26,7 @@ def on_a_slope(steepest, speed, turning, seconds=30.0):
         force = gravity + ((driven - last) / DT, driven * turned, 0.0) + BIAS + 0.05 * rng.standard_normal(3)
         rate = np.array((0.002, -rising - 0.003, turned)) + 0.002 * rng.standard_normal(3)
         side = turned * TRACK / 2
-        ways = Ways(((driven + last) / 2 - side) * DT, ((driven + last) / 2 + side) * DT)
+        ways = WheelTravel(((driven + last) / 2 - side) * DT, ((driven + last) / 2 + side) * DT)
         last = driven
         yield rate, force, ways, gravity
 
@@ -69,7 +69,7 @@ def test_a_blow_is_no_slope():
 def test_a_gyroscope_that_is_biased_does_not_tilt_a_vehicle_that_stands(bias):
     inclination = Inclination()
     for _ in range(1500):
-        tilting = inclination.step(DT, np.array((0.01, bias, 0.0)), np.array((0.0, 0.0, GRAVITY)), Ways(0.0, 0.0))
+        tilting = inclination.step(DT, np.array((0.01, bias, 0.0)), np.array((0.0, 0.0, GRAVITY)), WheelTravel(0.0, 0.0))
     assert tilting.rate == pytest.approx(0.0, abs=1e-3)
 
 
@@ -97,6 +97,6 @@ def test_ways_and_turns_are_told_as_from_above(roll, pitch):
     upward = matrix(from_euler(roll, pitch, 0.0))[2]
     inclination.state[:2] = GRAVITY * upward[:2]
     rate = np.array((0.1, -0.2, 0.5))
-    ways, turning = inclination.seen_from_above(Ways(1.0, 2.0, 3.0), rate)
+    ways, turning = inclination.seen_from_above(WheelTravel(1.0, 2.0, 3.0), rate)
     assert ways == pytest.approx((np.cos(pitch), 2.0 * np.cos(pitch), 3.0 * np.sqrt(1.0 - upward[1] ** 2)))
     assert turning == pytest.approx((rate[1] * np.sin(roll) + rate[2] * np.cos(roll)) / np.cos(pitch))

@@ -33,7 +33,7 @@ def test_mecanum_wheels_turn_as_the_textbook_has_it():
 
 @given(twists)
 def test_what_they_have_rolled_is_told_as_of_two_wheels_and_sideways(twist):
-    ways = MECANUM.ways(MECANUM.wheels(twist))
+    ways = MECANUM.travel(MECANUM.wheels(twist))
     assert (ways.left + ways.right) / 2 == pytest.approx(twist.linear, abs=1e-9)
     assert (ways.right - ways.left) / MECANUM.track == pytest.approx(twist.angular, abs=1e-9)
     assert ways.aside == pytest.approx(twist.lateral, abs=1e-9)

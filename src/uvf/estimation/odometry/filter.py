@@ -152,7 +152,7 @@ class DriveFilter:
             self._roll(step, turn)
         told = model.told(step, self.track)
         x = self.kalman.x
-        self._turn_rate, self._aside = model.turn_rate(x, told), step.ways.aside / step.dt
+        self._turn_rate, self._aside = model.turn_rate(x, told), step.travel.aside / step.dt
         noise = model.pose_noise(x, step, self.noise, self._turn_rate * step.dt, self.track)
         self.kalman.move(lambda point: model.moved(point, told), model.moved_jacobian(x, told), noise)
         if step.dt > GAP:
@@ -178,7 +178,7 @@ class DriveFilter:
 
     def _rests(self, step: Step) -> bool:
         """Whether it stands; if so the speed is zero and the gyroscope tells its bias."""
-        self._still_for = self._still_for + step.dt if not any(step.ways) else 0.0
+        self._still_for = self._still_for + step.dt if not any(step.travel) else 0.0
         if self._still_for <= AT_REST:
             return False
         n, surely = len(self.kalman.x), self._still_for > SLIDES_ON

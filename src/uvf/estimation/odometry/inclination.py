@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.geodesy import GRAVITY
-from uvf.maths.kinematics import Ways
+from uvf.maths.kinematics import WheelTravel
 
 Floats = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class Inclination:
         self._gyro_bias = np.zeros(2)
         self._means: tuple[Floats, Floats] | None = None
 
-    def step(self, dt: float, rate: Floats, force: Floats, ways: Ways) -> Tilting:
+    def step(self, dt: float, rate: Floats, force: Floats, ways: WheelTravel) -> Tilting:
         """How gravity's forward part has changed in the last ``dt`` [s].
 
         rate: (3,) rad/s, force: (3,) m/s^2 in the middle of the axle, both in the base frame; ways: what the wheels have rolled.
@@ -55,8 +55,8 @@ class Inclination:
         self._feel(dt, force[:2] - accelerated)
         return tilting
 
-    def seen_from_above(self, ways: Ways, rate: Floats) -> tuple[Ways, float]:
-        """Ways of the wheels and turning [rad/s] as they are from above, where the vehicle drives on a slope.
+    def seen_from_above(self, ways: WheelTravel, rate: Floats) -> tuple[WheelTravel, float]:
+        """Travel of the wheels and turning [rad/s] as they are from above, where the vehicle drives on a slope.
 
         rate: (3,) rad/s, base frame. With the vertical (a, b, c) in the base frame a way is shorter by sqrt(1 - a^2), and the heading
         turns at (q b + r c) / (1 - a^2) (Beard and McLain, Small Unmanned Aircraft, eq. 3.3).
@@ -66,7 +66,7 @@ class Inclination:
         upward = sqrt(max(level - aside * aside, 0.0))
         shorter = sqrt(level)
         turning = (float(rate[1]) * aside + float(rate[2]) * upward) / level
-        return Ways(ways.left * shorter, ways.right * shorter, ways.aside * sqrt(1.0 - aside * aside)), turning
+        return WheelTravel(ways.left * shorter, ways.right * shorter, ways.aside * sqrt(1.0 - aside * aside)), turning
 
     def _rest(self, dt: float, rate: Floats, force: Floats, stands: bool) -> None:
         """Learns the gyroscope's biases while the vehicle stands and is not tilted: what is felt stays the same."""

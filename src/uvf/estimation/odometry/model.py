@@ -21,7 +21,7 @@ Told = tuple[float, float, float, float, float, float, bool, bool, float]
 def told(step: Step, track: float) -> Told:
     """The step and the track [m] as one tuple for the compiled functions."""
     rate, force = step.rate, step.force
-    left, right, aside = step.ways
+    left, right, aside = step.travel
     return step.dt, left, right, rate or 0.0, force or 0.0, track, rate is not None, force is not None, aside
 
 
@@ -81,7 +81,7 @@ def pose_noise(x: Floats, step: Step, noise: Noise, turn: float, track: float) -
     """
     q = np.zeros((len(x), len(x)))
     across = np.array((-np.sin(x[HEADING]), np.cos(x[HEADING])))
-    q[:HEADING, :HEADING] = np.outer(across, across) * (noise.distance**2 * abs(step.ways.aside) + (noise.skid * step.ways.aside) ** 2)
+    q[:HEADING, :HEADING] = np.outer(across, across) * (noise.distance**2 * abs(step.travel.aside) + (noise.skid * step.travel.aside) ** 2)
     q[HEADING, HEADING] = noise.turn**2 * abs(turn) + noise.gyro**2 * step.dt
     if step.rate is None:
         q[HEADING, HEADING] += sum(wheel_variance(x, step, noise, turn, track)) / track**2

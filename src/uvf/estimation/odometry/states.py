@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from uvf.maths.kinematics import Ways
+from uvf.maths.kinematics import WheelTravel
 
 X, Y, HEADING, SPEED, GYRO_BIAS, ACCEL_OFFSET, LEFT, RIGHT, GNSS_X, GNSS_Y = range(10)
 """m, m, rad (not wrapped: a mean of headings is a plain mean), m/s forward, rad/s, m/s^2, and the errors of the wheels' radii as parts
@@ -20,7 +20,7 @@ class Step(NamedTuple):
     """Wheel and inertial readings of the last ``dt`` [s]."""
 
     dt: float
-    ways: Ways  # by the nominal radii of the wheels
+    travel: WheelTravel  # by the nominal radii of the wheels
     rate: float | None = None  # rad/s, mean of the gyroscope about the upward axis
     force: float | None = None  # m/s^2, mean of the accelerometer's forward axis at the middle of the axle
     tilting: float = 0.0  # m/s^3, by which gravity's part of that force changes as the vehicle pitches, and turns on a slope
@@ -29,12 +29,12 @@ class Step(NamedTuple):
     @property
     def left(self) -> float:
         """Way of the left wheel [m]."""
-        return self.ways.left
+        return self.travel.left
 
     @property
     def right(self) -> float:
         """Way of the right wheel [m]."""
-        return self.ways.right
+        return self.travel.right
 
 
 @dataclass(frozen=True)

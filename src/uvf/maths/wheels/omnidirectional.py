@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.maths.kinematics import Twist, Ways
+from uvf.maths.kinematics import Twist, WheelTravel
 
 Floats = NDArray[np.float64]
 
@@ -88,10 +88,10 @@ class OmnidirectionalDrive:
         v_x, v_y, turn = (self._twist_from_wheels @ np.asarray(wheels)).tolist()
         return Twist(v_x, turn, v_y)
 
-    def ways(self, turned: Sequence[float]) -> Ways:
-        """Ways [m] of the two wheels of ``track`` that would turn it as much, and sideways, by wheels that have turned so far [rad]."""
+    def travel(self, turned: Sequence[float]) -> WheelTravel:
+        """Of the two wheels of ``track`` that would turn it as much, and sideways, by wheels that have turned so far [rad]."""
         ahead, turn, aside = self.twist(turned)
-        return Ways(ahead - turn * self.track / 2, ahead + turn * self.track / 2, aside)
+        return WheelTravel(ahead - turn * self.track / 2, ahead + turn * self.track / 2, aside)
 
     def wheels(self, twist: Twist) -> tuple[float, ...]:
         """Speeds [rad/s] for a commanded velocity of the body."""
