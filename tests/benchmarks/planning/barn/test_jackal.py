@@ -10,12 +10,12 @@ DT = 0.005
 
 
 def driven(command, seconds):
-    """Poses (n, 3) and twists (n, 2)."""
+    """Poses (n, 3) and twists (n, 2), forward and turning."""
     drive, poses, twists = Drive((0.0, 0.0, 0.0), DT), [], []
     for _ in range(round(seconds / DT)):
         drive.step(Twist(*command))
         poses.append(drive.pose.copy())
-        twists.append(drive.twist)
+        twists.append(drive.twist[:2])
     return np.array(poses), np.array(twists)
 
 
