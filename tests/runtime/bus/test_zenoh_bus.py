@@ -59,9 +59,9 @@ def test_two_who_read_one_topic_each_hear_every_message_once_and_in_order(buses)
 def test_one_who_keeps_only_the_latest_does_not_shorten_what_another_one_hears(buses):
     sender, receiver = buses
     every, latest = [], []
-    receiver.subscribe(KEY, Qos.SENSOR, latest.append, 1)
-    receiver.subscribe(KEY, Qos.SENSOR, every.append, 256)
-    publisher = publisher_heard(sender, Qos.SENSOR, receiver, (every, latest))
+    receiver.subscribe(KEY, Qos.STATE, latest.append, 1)
+    receiver.subscribe(KEY, Qos.STATE, every.append, 256)
+    publisher = publisher_heard(sender, Qos.STATE, receiver, (every, latest))
     for k in range(50):
         publisher.put(bytes([k]), k)
     heard_by(receiver, (every,), 50)
