@@ -111,7 +111,7 @@ class Cockpit:
 
     def key(self, t: float, name: str) -> None:
         """Passes a key on to the stick; ``t`` [s] is not used."""
-        self._stick.key(name)
+        self._stick.key(name.lower())
 
     def turn(self, t: float, pad: GamepadState) -> None:
         """Takes the gamepad at ``t`` [s], and sends the surface command once the stick has been aligned with the surfaces."""

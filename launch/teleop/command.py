@@ -16,19 +16,21 @@ from launch.teleop.link import TeleopLink
 from launch.teleop.loop import END, Console, Padlike, Post, operate
 from launch.teleop.terminal import Terminal, TerminalClosed, key_by_key
 from uvf.client import Client
-from uvf.control.teleop_drive import STILL, DriveTeleop, GamepadState, TeleopCommand
+from uvf.control.teleop_drive import STILL, DriveTeleop, GamepadState
+from uvf.maths.kinematics import Twist
 from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.yaml_data import BadInput, nearest
 
 GREETING = """w a s d or arrows: drive    q e z c: curves    space: stop    x or Ctrl-C: end
 r f: linear speed up, down    t g: turn rate up, down    1..9: vehicle on, off    m: take over again
 gamepad: hold the left shoulder button and use the left stick; d-pad: speeds; B: stop"""
+SIDEWAYS_GREETING = "Shift with a d: sideways, with q e z c: diagonally, without turning    gamepad: right stick"
 
 
 class Vehicles(Protocol):
     """The connection to the vehicles."""
 
-    def send(self, vehicle: str, command: TeleopCommand) -> None:
+    def send(self, vehicle: str, command: Twist) -> None:
         """Sends a velocity command to a vehicle."""
         ...
 
@@ -81,10 +83,12 @@ def status_line(hand: DriveTeleop, vehicles: Vehicles, pad: str, t: float) -> st
     links = ", ".join(f"{shown} {vehicles.state(name)}" for shown, name in zip(names, hand.vehicles, strict=True))
     scale, now = hand.scale, hand.wanted(t)
     speeds = f"{scale.linear:.2f} m/s {scale.angular:.2f} rad/s | now {now.linear:+.2f} {now.angular:+.2f}"
+    if now.lateral:
+        speeds += f" sideways {now.lateral:+.2f}"
     return f"{links} | {speeds}" + (f" | {pad}" if pad else "")
 
 
-def wanted_vehicles(site: Scenario, names: Sequence[str]) -> tuple[list[str], TeleopCommand]:
+def wanted_vehicles(site: Scenario, names: Sequence[str]) -> tuple[list[str], Twist]:
     """The ground vehicles asked for, and the speed limits of the slowest of them. Raises BadInput."""
     bodies = {m.name: m.file.ground for m in site.of_kind("ground") if m.file.ground is not None}
     chosen = list(dict.fromkeys(names)) or list(bodies)
@@ -93,8 +97,7 @@ def wanted_vehicles(site: Scenario, names: Sequence[str]) -> tuple[list[str], Te
             raise BadInput(f"{site.mission_path}: no ground vehicle '{name}' there; {nearest(name, bodies)}")
     if not names and len(chosen) != 1:
         raise BadInput(f"{site.mission_path}: say which vehicle; {nearest('', bodies)}")
-    linear, angular = ([getattr(bodies[name], limit) for name in chosen] for limit in ("max_linear", "max_angular"))
-    return chosen, TeleopCommand(min(linear), min(angular))
+    return chosen, Twist(*map(min, zip(*(bodies[name].max_twist for name in chosen), strict=True)))
 
 
 @contextmanager
@@ -131,7 +134,8 @@ def post_for(site: Scenario, names: Sequence[str]) -> tuple[str, Callable[[Clien
     if body is not None:
         return aircraft.GREETING, lambda client: aircraft.cockpit(client, name, body)
     chosen, most = wanted_vehicles(site, names)
-    return GREETING, lambda client: WheelPost(DriveTeleop(chosen, most), TeleopLink(client))
+    greeting = f"{GREETING}\n{SIDEWAYS_GREETING}" if most.lateral > 0 else GREETING
+    return greeting, lambda client: WheelPost(DriveTeleop(chosen, most), TeleopLink(client))
 
 
 def teleop(names: Sequence[str], mission: str | None, say: Callable[[str], None]) -> None:

@@ -5,7 +5,7 @@ import time
 from schemas import topics
 from schemas.messages import ArmRequest, DriveCommand, Mode, ModeRequest
 from uvf.client import Client
-from uvf.control.teleop_drive import TeleopCommand
+from uvf.maths.kinematics import Twist
 from uvf.runtime.state.stop_all import told
 
 SOURCE = "teleop"
@@ -21,9 +21,10 @@ class TeleopLink:
         self._count: dict[str, int] = {}
         self._heard_at: dict[str, float] = {}
 
-    def send(self, vehicle: str, command: TeleopCommand) -> None:
+    def send(self, vehicle: str, command: Twist) -> None:
         """Publishes a velocity command [m/s, rad/s] for a ground vehicle."""
-        self._client.send(vehicle, topics.DRIVE.by(SOURCE), DriveCommand(linear=command.linear, angular=command.angular))
+        linear, angular, lateral = command
+        self._client.send(vehicle, topics.DRIVE.by(SOURCE), DriveCommand(linear=linear, angular=angular, lateral=lateral))
 
     def take_over(self, vehicle: str) -> str:
         """Asks for mode MANUAL and arms; what was refused and why, "" if nothing."""

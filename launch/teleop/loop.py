@@ -65,11 +65,11 @@ def operate(post: Post, console: Console, pad: Padlike, clock: Callable[[], floa
         while True:
             keys = console.read(max(due - clock(), 0.0))
             t = clock()
-            if END in keys:
+            if END in (pressed := {name.lower() for name in keys}):
                 return
             for name in keys:
                 post.key(t, name)
-            if "m" in keys:
+            if "m" in pressed:
                 note = post.take_over()
             if t < due:
                 continue

@@ -26,12 +26,12 @@ class Keys:
         self._cut = b""
 
     def feed(self, data: bytes) -> list[str]:
-        r"""Keys in ``data``: ``\x1b[A`` and ``\x1bOA`` are "up", and so on; other sequences are ignored; letters come in lower case."""
+        r"""Keys in ``data``: ``\x1b[A`` and ``\x1bOA`` are "up", and so on; other sequences are ignored; letters come as typed."""
         data, self._cut = self._cut + data, b""
         found: list[str] = []
         while data:
             if data[:1] != b"\x1b":
-                found.append(data[:1].decode("ascii", "replace").lower())
+                found.append(data[:1].decode("ascii", "replace"))
                 data = data[1:]
                 continue
             end = _end_of_sequence(data)

@@ -113,7 +113,7 @@ KINDS = (
 )
 FIELDS = ("uuid", "name", "updates", "value", "source")
 ATTRIBUTES = ("removed", "update_cb", "label", "value", "min")
-WORDS = ("[1]", '[1, "steer", 9, 9]', '[1, "select"]', '[1, "command", "burger", "fly"]', "[" * 900, "stop", "burger")
+WORDS = ("[1]", '[1, "steer", 9, 9, 9]', '[1, "select"]', '[1, "command", "burger", "fly"]', "[" * 900, "stop", "burger")
 VALUES = (None, True, -1, 2**63, 1e308, float("nan"), float("inf"), "x" * 200, b"\x00" * 50, [], [[1]], {"a": {}}, *WORDS)
 
 
@@ -200,7 +200,7 @@ def test_nobody_takes_stop_all_from_the_others(station):
 
 
 def test_nobody_speaks_through_another_ones_page_or_for_what_is_greyed_out(station, good):
-    words = (["take-wheel", "burger"], ["command", "burger", "hold"], ["steer", 1, 0])
+    words = (["take-wheel", "burger"], ["command", "burger", "hold"], ["steer", 1, 0, 0])
     send(station.port, [pack(update(good.bridge, value=json.dumps([i, *word]))) for i, word in enumerate(words)])
     for key in ("arm", "takeoff", "return", "nonsense"):
         good.say("command", "burger", key)

@@ -203,10 +203,11 @@ class LeaveWheel(PageAction):
 
 @dataclass(frozen=True)
 class Steer(PageAction):
-    """Directions that a page holds: parts (-1..1) of the linear and the angular scale."""
+    """Directions that a page holds: parts (-1..1) of the scales; turn and aside: to the left."""
 
     forward: Share
-    left: Share
+    turn: Share
+    aside: Share
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from uvf.control.teleop_drive import DriveTeleop, TeleopCommand
+from uvf.control.teleop_drive import STILL, DriveTeleop
+from uvf.maths.kinematics import Twist
 
 PATIENCE = 0.5  # s a direction counts: a page repeats it every 0.1 s while it is held
 
@@ -10,7 +11,7 @@ PATIENCE = 0.5  # s a direction counts: a page repeats it every 0.1 s while it i
 class ManualDriving:
     """Who drives which vehicle: a vehicle has one holder, and a page holds one vehicle. Times [s] are of one monotonic clock."""
 
-    def __init__(self, most: Mapping[str, TeleopCommand]) -> None:
+    def __init__(self, most: Mapping[str, Twist]) -> None:
         """most: of each vehicle that can be driven, what it can do."""
         self._hands = {name: DriveTeleop((name,), limits) for name, limits in most.items()}
         self._holders: dict[str, int] = {}
@@ -19,7 +20,7 @@ class ManualDriving:
         """Whether the vehicle can be driven by hand."""
         return vehicle in self._hands
 
-    def scale(self, vehicle: str) -> TeleopCommand:
+    def scale(self, vehicle: str) -> Twist:
         """Velocities [m/s, rad/s] at which a held direction drives."""
         return self._hands[vehicle].scale
 
@@ -51,12 +52,12 @@ class ManualDriving:
         for vehicle in list(self._holders):
             self.free(t, vehicle)
 
-    def steer(self, t: float, page: int, way: tuple[float, float]) -> None:
-        """Takes what a page holds at ``t`` [s]: parts (-1..1) of the linear and angular scale; ignored unless the page drives."""
+    def steer(self, t: float, page: int, way: Twist) -> None:
+        """Takes what a page holds at ``t`` [s]: parts (-1..1) of the scales; ignored unless the page drives."""
         hand = self._hands.get(self.held_by(page))
         if hand is None:
             return
-        if way == (0.0, 0.0):
+        if way == STILL:
             hand.stop(t)
         else:
             hand.hold(t, way, PATIENCE)
@@ -67,6 +68,6 @@ class ManualDriving:
         if hand is not None:
             hand.key(t, key)
 
-    def commands(self, t: float) -> dict[str, TeleopCommand]:
+    def commands(self, t: float) -> dict[str, Twist]:
         """The velocity commands to send at ``t`` [s]; none to a vehicle that has been told long enough to stop."""
         return {name: command for hand in self._hands.values() for name, command in hand.commands(t).items()}

@@ -62,7 +62,8 @@ from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model
 from services.gcs.state.wording import GIMBAL_MODES
 from services.gcs.surveying import SurveyPlanner
-from uvf.control.teleop_drive import SCALINGS, TeleopCommand
+from uvf.control.teleop_drive import SCALINGS
+from uvf.maths.kinematics import Twist
 from uvf.runtime.contract.service import Answer
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.state.stop_all import StopVoice
@@ -79,7 +80,7 @@ class Commander:
         self.time = time
         self._voice = StopVoice(SOURCE)
         bodies = {v.name: v.member.file.ground for v in model.vehicles.values()}
-        self.by_hand = ManualDriving({n: TeleopCommand(b.max_linear, b.max_angular) for n, b in bodies.items() if b is not None})
+        self.by_hand = ManualDriving({n: b.max_twist for n, b in bodies.items() if b is not None})
         self._browsing = Browsing(model, self.by_hand)
         self._orders = OrderBook(model)
         self._maps = MapOrders(self._orders)
@@ -100,8 +101,8 @@ class Commander:
                     self._heed(t, session, action, out)
         self._handover.hand_over(t)
         now = stamp(self._model.sim_time)
-        for name, (linear, angular) in self.by_hand.commands(t).items():
-            out.drive[name] = DriveCommand(timestamp=now, linear=linear, angular=angular)
+        for name, (linear, angular, lateral) in self.by_hand.commands(t).items():
+            out.drive[name] = DriveCommand(timestamp=now, linear=linear, angular=angular, lateral=lateral)
         return out
 
     def _heed(self, t: float, session: BrowserSession, action: PageAction, out: Outbox) -> None:
@@ -221,7 +222,7 @@ class Commander:
         if vehicle is not None and self._orders.reason_against(session, vehicle):
             self.by_hand.let_go(t, session.page)
         elif isinstance(action, Steer):
-            self.by_hand.steer(t, session.page, (action.forward, action.left))
+            self.by_hand.steer(t, session.page, Twist(action.forward, action.turn, action.aside))
         elif action.key in SCALINGS:
             self.by_hand.rescale(t, session.page, action.key)
 

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from math import inf
 from typing import NamedTuple
 
+from uvf.maths.kinematics import Twist
+
 FIRST_HOLD = 0.5  # s a key counts after it is pressed: keyboards wait about that long before they repeat it
 REPEAT_HOLD = 0.2  # s it counts once it repeats: its being let go is seen that fast
 ZEROS = 0.5  # s of standing still that are sent after the last motion, then silence
@@ -13,20 +15,29 @@ LEAST = 0.02  # m/s and rad/s, the smallest scales
 DEAD_ZONE = 0.1  # of a stick's way: sticks seldom come to rest at zero
 
 DIRECTIONS = {
-    "w": (1.0, 0.0),
-    "up": (1.0, 0.0),
-    "s": (-1.0, 0.0),
-    "down": (-1.0, 0.0),
-    "a": (0.0, 1.0),
-    "left": (0.0, 1.0),
-    "d": (0.0, -1.0),
-    "right": (0.0, -1.0),
-    "q": (1.0, 1.0),
-    "e": (1.0, -1.0),
-    "z": (-1.0, -1.0),
-    "c": (-1.0, 1.0),
+    "w": Twist(1.0, 0.0),
+    "up": Twist(1.0, 0.0),
+    "s": Twist(-1.0, 0.0),
+    "down": Twist(-1.0, 0.0),
+    "a": Twist(0.0, 1.0),
+    "left": Twist(0.0, 1.0),
+    "d": Twist(0.0, -1.0),
+    "right": Twist(0.0, -1.0),
+    "q": Twist(1.0, 1.0),
+    "e": Twist(1.0, -1.0),
+    "z": Twist(-1.0, -1.0),
+    "c": Twist(-1.0, 1.0),
 }
-"""Key -> parts of the linear and the angular scale; the lower row drives the curves of the upper one backwards."""
+"""Key -> parts (-1..1) of the scales; the lower row drives the curves of the upper one backwards."""
+SIDEWAYS = {
+    "A": Twist(0.0, 0.0, 1.0),
+    "D": Twist(0.0, 0.0, -1.0),
+    "Q": Twist(1.0, 0.0, 1.0),
+    "E": Twist(1.0, 0.0, -1.0),
+    "Z": Twist(-1.0, 0.0, 1.0),
+    "C": Twist(-1.0, 0.0, -1.0),
+}
+"""With Shift, for vehicles that go sideways: to where the key lies, without turning."""
 SCALINGS = {"r": (STEP, 1.0), "f": (1 / STEP, 1.0), "t": (1.0, STEP), "g": (1.0, 1 / STEP)}
 """Key -> factors of the linear and the angular scale."""
 
@@ -42,36 +53,36 @@ class GamepadState(NamedTuple):
     angular_step: int = 0
     right_forward: float = 0.0
     right_left: float = 0.0
-    """Of the right stick, with which only aircraft are flown."""
+    """Of the right stick, with which aircraft are flown; to the side it moves vehicles that go sideways."""
 
 
-class TeleopCommand(NamedTuple):
-    """Velocity commanded by an operator, in the base frame."""
-
-    linear: float  # m/s
-    angular: float  # rad/s
-
-
-STILL = TeleopCommand(0.0, 0.0)
+STILL = Twist(0.0, 0.0)
 
 
 class DriveTeleop:
     """One operator who drives several vehicles. Times [s] come from one clock that never goes back."""
 
-    def __init__(self, vehicles: Sequence[str], most: TeleopCommand) -> None:
-        """most: what the slowest of the vehicles can do."""
+    def __init__(self, vehicles: Sequence[str], most: Twist) -> None:
+        """most: what the slowest of the vehicles can do; no sideways velocity where one of them has none."""
         self.vehicles = tuple(vehicles)
         self.active = set(vehicles)
-        self.scale = TeleopCommand(min(START_LINEAR, most.linear), min(START_ANGULAR, most.angular))
+        self.scale = Twist(*map(min, (START_LINEAR, START_ANGULAR, START_LINEAR), most))
         self._most = most
-        self._direction = (0.0, 0.0)
+        self._direction = STILL
         self._pressed_at = -inf
         self._until = -inf
         self._pad = GamepadState()
         self._silent_from = dict.fromkeys(vehicles, -inf)
 
     def key(self, t: float, name: str) -> None:
-        """Takes one press, or one repetition, of a key at ``t`` [s]; keys without a meaning change nothing."""
+        """Takes one press, or one repetition, of a key at ``t`` [s]; keys without a meaning change nothing.
+
+        Letters come as typed: with Shift they move sideways, and count as without it where nothing goes sideways.
+        """
+        if self._most.lateral > 0 and name in SIDEWAYS:
+            self._press(t, SIDEWAYS[name])
+            return
+        name = name.lower()
         if name in DIRECTIONS:
             self._press(t, DIRECTIONS[name])
         elif name in SCALINGS:
@@ -91,10 +102,10 @@ class DriveTeleop:
         if pad.stop or (before.dead_man and not pad.dead_man):
             self.stop(t)
         elif pad.dead_man:
-            self.hold(t, (beyond_dead_zone(pad.forward), beyond_dead_zone(pad.left)), REPEAT_HOLD)
+            self.hold(t, Twist(*map(beyond_dead_zone, (pad.forward, pad.left, pad.right_left))), REPEAT_HOLD)
 
-    def hold(self, t: float, direction: tuple[float, float], patience: float) -> None:
-        """Drives in a direction (linear, angular) [parts of the scales, -1..1] from ``t`` for ``patience`` [s], unless held anew."""
+    def hold(self, t: float, direction: Twist, patience: float) -> None:
+        """Drives in a direction [parts of the scales, -1..1] from ``t`` for ``patience`` [s], unless held anew."""
         self._direction, self._until = direction, t + patience
         self._keep(t)
 
@@ -103,14 +114,14 @@ class DriveTeleop:
         self._until = -inf
         self._keep(t)
 
-    def wanted(self, t: float) -> TeleopCommand:
+    def wanted(self, t: float) -> Twist:
         """The velocity commanded to the active vehicles at ``t`` [s]."""
         if t >= self._until:
             return STILL
-        forward, left = self._direction
-        return TeleopCommand(forward * self.scale.linear, left * self.scale.angular)
+        way, scale = self._direction, self.scale
+        return Twist(way.linear * scale.linear, way.angular * scale.angular, way.lateral * scale.lateral)
 
-    def commands(self, t: float) -> dict[str, TeleopCommand]:
+    def commands(self, t: float) -> dict[str, Twist]:
         """Commands to send at ``t`` [s], by vehicle; none to a vehicle that has been sent zeros for long enough."""
         wanted = self.wanted(t)
         found = {name: wanted if name in self.active else STILL for name in self.vehicles}
@@ -121,14 +132,15 @@ class DriveTeleop:
         """Keeps the active vehicles for a while, though they stand."""
         self._silent_from |= dict.fromkeys(self.active, t + ZEROS)
 
-    def _press(self, t: float, direction: tuple[float, float]) -> None:
+    def _press(self, t: float, direction: Twist) -> None:
         repeats = direction == self._direction and t - self._pressed_at <= REPEAT_HOLD
         self._direction, self._pressed_at = direction, t
         self._until = t + (REPEAT_HOLD if repeats else FIRST_HOLD)
 
     def _rescale(self, linear: float, angular: float) -> None:
         scale, most = self.scale, self._most
-        self.scale = TeleopCommand(_within(scale.linear * linear, most.linear), _within(scale.angular * angular, most.angular))
+        speed = _within(scale.linear * linear, most.linear)
+        self.scale = Twist(speed, _within(scale.angular * angular, most.angular), min(speed, most.lateral))
 
 
 def _within(scale: float, most: float) -> float:

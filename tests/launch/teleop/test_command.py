@@ -6,7 +6,8 @@ import pytest
 
 from launch.teleop.command import drive, status_line, wanted_vehicles
 from launch.teleop.terminal import TerminalClosed
-from uvf.control.teleop_drive import STILL, DriveTeleop, GamepadState, TeleopCommand
+from uvf.control.teleop_drive import STILL, DriveTeleop, GamepadState
+from uvf.maths.kinematics import Twist
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 
@@ -67,7 +68,7 @@ class Stick:
 def run(script, *names, pad=(), refused=""):
     clock = Clock()
     vehicles, console = Vehicles(clock, refused), Console(clock, script)
-    hand = DriveTeleop(names or ("one",), TeleopCommand(1.0, 1.0))
+    hand = DriveTeleop(names or ("one",), Twist(1.0, 1.0))
     with suppress(TerminalClosed):
         drive(hand, vehicles, console, Stick(clock, pad), clock)
     return vehicles, console
@@ -75,7 +76,7 @@ def run(script, *names, pad=(), refused=""):
 
 def test_commands_go_out_twenty_times_a_second_then_zero_then_nothing():
     vehicles, _ = run([(1.0, "w"), (5.0, "x")])
-    moving = [t for t, _, command in vehicles.sent if command == TeleopCommand(0.5, 0.0)]
+    moving = [t for t, _, command in vehicles.sent if command == Twist(0.5, 0.0)]
     standing = [t for t, _, command in vehicles.sent if command == STILL]
     assert 9 <= len(moving) <= 11 and 1.0 <= moving[0] <= 1.05 and moving[-1] < 1.5
     assert 9 <= len(standing) <= 11 and max(standing[:-1]) < 2.0
@@ -93,7 +94,7 @@ def test_an_exception_goes_on_but_the_vehicles_stand_before(error):
     clock = Clock()
     vehicles = Vehicles(clock)
     with pytest.raises(error):
-        drive(DriveTeleop(("one",), TeleopCommand(1, 1)), vehicles, Console(clock, [(0.5, "w"), (0.7, error())]), Stick(clock), clock)
+        drive(DriveTeleop(("one",), Twist(1, 1)), vehicles, Console(clock, [(0.5, "w"), (0.7, error())]), Stick(clock), clock)
     assert vehicles.sent[-1] == (0.7, "one", STILL)
 
 
@@ -106,12 +107,12 @@ def test_one_device_drives_two_vehicles_alike():
     vehicles, _ = run([(1.0, "q"), (1.3, "x")], "one", "two")
     by_vehicle = {name: [(t, command) for t, vehicle, command in vehicles.sent if vehicle == name] for name in ("one", "two")}
     assert by_vehicle["one"] == by_vehicle["two"]
-    assert by_vehicle["one"][0][1] == TeleopCommand(0.5, 0.5)
+    assert by_vehicle["one"][0][1] == Twist(0.5, 0.5)
 
 
 def test_a_gamepad_drives_without_a_key():
     vehicles, _ = run([(3.0, "x")], pad=[(1.0, 2.0, GamepadState(forward=-1.0, dead_man=True))])
-    moving = [t for t, _, command in vehicles.sent if command == TeleopCommand(-0.5, 0.0)]
+    moving = [t for t, _, command in vehicles.sent if command == Twist(-0.5, 0.0)]
     assert 1.0 <= min(moving) < 1.06 and 1.94 < max(moving) < 2.0
 
 
@@ -127,7 +128,7 @@ def test_a_refusal_is_shown():
 
 def test_the_line_tells_vehicles_links_scales_and_motion():
     clock = Clock()
-    hand = DriveTeleop(("one", "two"), TeleopCommand(1.0, 1.0))
+    hand = DriveTeleop(("one", "two"), Twist(1.0, 1.0))
     hand.key(0.0, "2")
     hand.key(0.0, "s")
     line = status_line(hand, Vehicles(clock), "Pad X", 0.1)
@@ -140,7 +141,7 @@ def site():
 
 
 def test_without_a_name_it_is_the_only_ground_vehicle(site):
-    assert wanted_vehicles(site, []) == (["burger"], TeleopCommand(0.5, 2.0))
+    assert wanted_vehicles(site, []) == (["burger"], Twist(0.5, 2.0))
     assert wanted_vehicles(site, ["burger", "burger"])[0] == ["burger"]
 
 

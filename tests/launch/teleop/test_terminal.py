@@ -13,7 +13,7 @@ from uvf.models.yaml_data import BadInput
 @pytest.mark.parametrize(
     ("data", "keys"),
     [
-        (b"wWa ", ["w", "w", "a", " "]),
+        (b"wWa ", ["w", "W", "a", " "]),
         (b"\x1b[A\x1b[B\x1b[C\x1b[D", ["up", "down", "right", "left"]),
         (b"\x1bOA\x1bOD", ["up", "left"]),
         (b"\x1b[3~w", ["w"]),

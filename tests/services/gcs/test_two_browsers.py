@@ -114,19 +114,21 @@ def test_cameras_are_chosen_and_looked_at_by_each_alone(station):
 
 
 def test_one_drives_while_the_other_one_looks_around(station):
-    station.press(TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0))
+    station.press(TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0, 0.0))
     assert station.script.drives[-1][0] > 0
-    station.press(Select(OTHER, UGV), OpenTab(OTHER, "drive"), Command(ME, UAV, "hold"), Steer(ME, 1.0, 0.0), Steer(OTHER, -1.0, 0.0))
+    station.press(
+        Select(OTHER, UGV), OpenTab(OTHER, "drive"), Command(ME, UAV, "hold"), Steer(ME, 1.0, 0.0, 0.0), Steer(OTHER, -1.0, 0.0, 0.0)
+    )
     assert station.script.drives[-1][0] > 0
     assert "data-driver='mine'" in station.page.seen_by(ME).html["wheel"]
     assert "driven from another page" in station.page.seen_by(OTHER).html["wheel"]
 
 
 def test_who_has_lost_control_drives_no_longer(station):
-    station.press(Select(OTHER, UGV), TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0))
+    station.press(Select(OTHER, UGV), TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0, 0.0))
     assert station.script.drives[-1][0] > 0
     station.model.control.holders[UGV] = OPERATORS[OTHER]
-    station.press(Steer(ME, 1.0, 0.0), seconds=0.2)
+    station.press(Steer(ME, 1.0, 0.0, 0.0), seconds=0.2)
     assert station.script.drives[-1] == (0.0, 0.0)
     assert station.service._commander.by_hand.held_by(ME) == ""
 
@@ -170,7 +172,7 @@ def test_control_may_be_kept(station):
 
 def test_who_does_not_answer_gives_control_away(station):
     station.press(Select(OTHER, UGV))
-    station.press(TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0), seconds=0.4)
+    station.press(TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0, 0.0), seconds=0.4)
     station.push("Ask for control", OTHER, seconds=ANSWER_WITHIN + 0.2)
     assert control(station) == {UGV: OPERATORS[OTHER]}
     assert station.service._commander.by_hand.holder(UGV) is None
@@ -192,23 +194,23 @@ def test_anybody_stops_all(station):
 
 
 def test_whoever_goes_lets_go_at_once_and_is_forgotten(station):
-    station.press(TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0))
+    station.press(TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0, 0.0))
     station.press(Leave(ME), seconds=0.05)
     assert station.script.drives[-1] == (0.0, 0.0)
     assert set(station.page.pictures[-1].panels) == {OTHER} == set(station.model.sessions)
-    station.press(Steer(ME, 1.0, 0.0), TakeWheel(ME, UGV), Select(ME, UAV), seconds=PATIENCE)
+    station.press(Steer(ME, 1.0, 0.0, 0.0), TakeWheel(ME, UGV), Select(ME, UAV), seconds=PATIENCE)
     assert all(drive == (0.0, 0.0) for drive in station.script.drives[-5:])
     assert station.service._commander.by_hand.holder(UGV) is None
 
 
 def test_another_ones_leaving_does_not_stop_the_driver(station):
-    station.press(TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0))
-    station.press(Leave(OTHER), Steer(ME, 1.0, 0.0))
+    station.press(TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0, 0.0))
+    station.press(Leave(OTHER), Steer(ME, 1.0, 0.0, 0.0))
     assert station.script.drives[-1][0] > 0
 
 
 def test_nobody_drives_what_he_does_not_see(station):
-    station.press(Select(ME, UAV), TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0))
+    station.press(Select(ME, UAV), TakeWheel(ME, UGV), Steer(ME, 1.0, 0.0, 0.0))
     assert station.script.drives == [] and Mode.MODE_MANUAL not in station.script.mode.values()
 
 

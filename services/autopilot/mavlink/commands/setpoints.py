@@ -27,6 +27,7 @@ from services.autopilot.mavlink.commands.guided import go_to
 from services.autopilot.mavlink.commands.places import BadPlace, place_of
 from services.autopilot.mavlink.connection.line import Holder, Sender, VehicleConnection
 from uvf.maths.geodesy import Floats
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import to_euler
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.names import frame_name
@@ -125,7 +126,8 @@ class Setpoints:
         velocity = (m.vx, m.vy, m.vz)
         if m.coordinate_frame in BODY_FRAMES and self._line.facts.is_ground:
             rate = 0.0 if m.type_mask & IGNORE_RATE else m.yaw_rate
-            self._drive(sender, m.vx if not m.type_mask & IGNORE_VELOCITY else math.nan, -rate)
+            ahead, aside = (math.nan, math.nan) if m.type_mask & IGNORE_VELOCITY else (m.vx, -m.vy)
+            self._drive(sender, Twist(ahead, -rate, aside if self._goes_sideways else 0.0))
         elif m.coordinate_frame != mav.MAV_FRAME_LOCAL_NED:
             self._refuse(sender, f"{frame_name(m.coordinate_frame)} is not supported: choose LOCAL_NED")
         else:
@@ -190,30 +192,41 @@ class Setpoints:
     def _anchor_z(self) -> float:
         return float(self._anchor[1][2]) if self._anchor is not None else 0.0
 
+    @property
+    def _goes_sideways(self) -> bool:
+        body = self._line.facts.file.ground
+        return body is not None and body.drive.kinematics.goes_sideways
+
     def _drive_along(self, target: Target, sender: Sender) -> None:
-        """A velocity over ground: turns to it, and drives as far as it looks that way. A place is for ``tick``."""
+        """A velocity over ground: turns to it, and drives as far as it looks that way, or goes there as it stands where it can.
+
+        A place is for ``tick``.
+        """
         nav = self._line.latest.nav
         if nav is None or not target.has_velocity:
             return
         east, north = target.velocity[:2]
         speed = math.hypot(east, north)
         off = math.remainder(math.atan2(north, east) - yaw_of(nav.orientation), math.tau) if speed > 0 else 0.0
-        self._drive(sender, speed * max(math.cos(off), 0.0), TURN_P * off)
+        if self._goes_sideways:
+            self._drive(sender, Twist(speed * math.cos(off), 0.0, speed * math.sin(off)))
+        else:
+            self._drive(sender, Twist(speed * max(math.cos(off), 0.0), TURN_P * off))
 
-    def _drive(self, sender: Sender, linear: float, angular: float) -> None:
+    def _drive(self, sender: Sender, twist: Twist) -> None:
         status = self._line.latest.status
         if status is None or status.mode != Mode.MODE_OFFBOARD:
             return
-        if not (math.isfinite(linear) and math.isfinite(angular)):
+        if not all(map(math.isfinite, twist)):
             self._refuse(sender, "a finite velocity is needed")
             return
-        if abs(linear) > FASTEST or abs(angular) > FASTEST:
+        if max(map(abs, twist)) > FASTEST:
             self._refuse(sender, f"the velocity is beyond {FASTEST:g} m/s, or the rate beyond {FASTEST:g} rad/s")
             return
         if not self._holder.admits(sender):
             return
         now = stamp(self._line.latest.sim_time)
-        self._line.commands["drive"] = DriveCommand(timestamp=now, linear=linear, angular=angular)
+        self._line.commands["drive"] = DriveCommand(timestamp=now, linear=twist.linear, angular=twist.angular, lateral=twist.lateral)
 
     def _on_attitude(self, m: mav.MAVLink_set_attitude_target_message, sender: Sender) -> None:
         """Attitude with thrust; rates alone are not flown, the heading follows from the bank."""

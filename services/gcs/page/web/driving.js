@@ -6,15 +6,15 @@ const EVERY = 100;  // ms
 const DEAD_ZONE = 0.12, HOLD_BUTTON = 5;  // of a gamepad: RB is held while it drives
 
 const wheel = () => document.querySelector('#gcs-wheel[data-driver="mine"]');
-const held = new Map();  // the key or pointer that holds it -> [forward, left]
+const held = new Map();  // the key or pointer that holds it -> [forward, turn, aside]
 let drove = false, gone = false;
 
 function stick() {
   if (gone || !navigator.getGamepads) return null;
   const pad = [...navigator.getGamepads()].find(pad => pad && pad.buttons[HOLD_BUTTON]?.pressed);
   if (!pad) return null;
-  const [, forward = 0, turn = 0] = pad.axes.map(axis => Math.abs(axis) < DEAD_ZONE ? 0 : -axis);
-  return [forward, turn];
+  const [aside = 0, forward = 0, turn = 0] = pad.axes.map(axis => Math.abs(axis) < DEAD_ZONE ? 0 : -axis);
+  return [forward, turn, aside];
 }
 
 function steer() {
@@ -22,7 +22,7 @@ function steer() {
   const pad = wheel() && stick();
   if (pad) held.set('gamepad', pad); else held.delete('gamepad');
   if (!held.size && !drove) return;
-  const way = [0, 1].map(i => Math.max(-1, Math.min(1, [...held.values()].reduce((sum, one) => sum + Number(one[i]), 0))));
+  const way = [0, 1, 2].map(i => Math.max(-1, Math.min(1, [...held.values()].reduce((sum, one) => sum + Number(one[i]), 0))));
   drove = held.size > 0;
   say('steer', ...way);
 }
@@ -37,7 +37,8 @@ window.addEventListener('keydown', event => {
   const panel = wheel();
   if (!panel || event.ctrlKey || event.altKey || event.metaKey || typing(event)) return;
   if (event.key === 'Escape') { releaseAll(); say('leave-wheel'); return; }
-  const button = panel.querySelector(`[data-keys~="${CSS.escape(event.key.length === 1 ? event.key.toLowerCase() : event.key)}"]`);
+  const presses = key => panel.querySelector(`[data-keys~="${CSS.escape(key)}"]`);
+  const button = presses(event.key) ?? (event.key.length === 1 ? presses(event.key.toLowerCase()) : null);
   if (!button) return;
   event.preventDefault();
   event.stopImmediatePropagation();  // viser's own keys would move the view

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
+from uvf.maths.kinematics import Twist
 from uvf.models.keys import key, plain
 from uvf.models.quantities import Name, NotNegative, PhysicsRate, Positive
 from uvf.models.vehicle.air import AirBody, BatteryPack, check_air, check_battery
@@ -46,6 +47,11 @@ class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     friction: Annotated[Friction, plain("Friction on the ground.")] = Friction()
     battery: Annotated[BatteryPack | None, plain("Battery; left out: the vehicle has none and never runs empty.")] = None
     physics_hz: Annotated[PhysicsRate, key("Hz", "Physics steps per second of simulation time.")] = 200.0
+
+    @property
+    def max_twist(self) -> Twist:
+        """Largest velocity in each direction; sideways 0 for a drive that does not go there."""
+        return Twist(self.max_linear, self.max_angular, self.max_linear if self.drive.kinematics.goes_sideways else 0.0)
 
 
 class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

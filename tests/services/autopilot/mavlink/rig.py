@@ -78,7 +78,17 @@ _ROVER_FILE = {
 }
 _PLANE_PARAMS = AirParams(trim_airspeed=25.0, hold_radius=90.0, return_altitude=40.0)
 PLANE_FACTS = VehicleInfo("plane", PLANE, convert(_PLANE_FILE, VehicleFile, "test"), ORIGIN, _PLANE_PARAMS, FIXED)
-ROVER_FACTS = VehicleInfo("rover", ROVER, convert(_ROVER_FILE, VehicleFile, "test"), ORIGIN, GroundAutopilotParams())
+
+
+def rover_facts(**drive):
+    """A rover with another drive, or other keys of it."""
+    body = _ROVER_FILE["ground"]
+    file = {**_ROVER_FILE, "ground": {**body, "drive": {**body["drive"], **drive}}}
+    return VehicleInfo("rover", ROVER, convert(file, VehicleFile, "test"), ORIGIN, GroundAutopilotParams())
+
+
+ROVER_FACTS = rover_facts()
+MECANUM_FACTS = rover_facts(kind="mecanum", left=["a", "b"], right=["c", "d"], wheelbase=0.2)
 
 
 class Shelf:
@@ -219,9 +229,10 @@ class Rig:
     SENSED = ("imu", "air_data", "surface_command", "wheel_command", "targets", "quality", "planning")
     CALLS = tuple(MavlinkService.calls)
 
-    def __init__(self, answers=True, shelf=None, reserved=None):
+    def __init__(self, answers=True, shelf=None, reserved=None, rover=ROVER_FACTS):
         self.link = MemoryLink()
         self.reserved = reserved
+        self.rover_facts = rover
         self.shelf = shelf or Shelf()
         self.restart()
         self.plane = Vehicle(Kind.KIND_FIXED_WING, (100.0, 200.0, 80.0))
@@ -245,7 +256,9 @@ class Rig:
 
     def restart(self):
         """The process begins anew; the vehicles go on."""
-        self.service = MavlinkService([PLANE_FACTS, ROVER_FACTS], self.link, {**shelves(), "plane": self.shelf}, reserved=self.reserved)
+        self.service = MavlinkService(
+            [PLANE_FACTS, self.rover_facts], self.link, {**shelves(), "plane": self.shelf}, reserved=self.reserved
+        )
 
     def say(self, message, system=255, component=190, peer=GCS):
         self._mav.srcSystem, self._mav.srcComponent = system, component

@@ -6,10 +6,26 @@ from services.gcs.state.vehicle_model import VehicleModel
 from services.gcs.state.wording import mode_name
 from services.gcs.view.controls import button
 from services.gcs.view.markup import Html, html, joined
-from uvf.control.teleop_drive import DIRECTIONS
+from uvf.control.teleop_drive import DIRECTIONS, SIDEWAYS
 
 ROWS = (("q", "w", "e"), ("a", "", "d"), ("z", "s", "c"))
-SIGNS = {"q": "↖", "w": "▲", "e": "↗", "a": "◀", "d": "▶", "z": "↙", "s": "▼", "c": "↘"}
+SIDEWAYS_ROWS = (("Q", "", "E"), ("A", "", "D"), ("Z", "", "C"))
+SIGNS = {
+    "q": "↖",
+    "w": "▲",
+    "e": "↗",
+    "a": "◀",
+    "d": "▶",
+    "z": "↙",
+    "s": "▼",
+    "c": "↘",
+    "Q": "⇖",
+    "E": "⇗",
+    "A": "⇐",
+    "D": "⇒",
+    "Z": "⇙",
+    "C": "⇘",
+}
 WORDS = {
     "q": "forward left",
     "w": "forward",
@@ -19,6 +35,12 @@ WORDS = {
     "z": "backward, turning right",
     "s": "backward",
     "c": "backward, turning left",
+    "Q": "forward and to the left, without turning",
+    "E": "forward and to the right, without turning",
+    "A": "sideways to the left",
+    "D": "sideways to the right",
+    "Z": "backward and to the left, without turning",
+    "C": "backward and to the right, without turning",
 }
 ARROWS = {"w": "ArrowUp", "a": "ArrowLeft", "s": "ArrowDown", "d": "ArrowRight"}
 
@@ -37,8 +59,9 @@ def wheel(v: VehicleModel, by_hand: ManualDriving, page: int) -> Html:
 
 
 def _pad(v: VehicleModel, by_hand: ManualDriving) -> Html:
-    keys = joined(_key(key) if key else html("<span></span>") for row in ROWS for key in row)
-    linear, angular = by_hand.scale(v.name)
+    linear, angular, lateral = by_hand.scale(v.name)
+    rows = (*ROWS, *SIDEWAYS_ROWS) if lateral > 0 else ROWS
+    keys = joined(_key(key) if key else html("<span></span>") for row in rows for key in row)
     scales = joined((_scale("rf", f"{linear:.2f} m/s", "speed"), _scale("tg", f"{angular:.2f} rad/s", "turn rate")))
     return html("<div class='g-drives'>{}</div><div class='g-keys'>{}</div>{}", _state(v), keys, scales)
 
@@ -51,13 +74,12 @@ def _state(v: VehicleModel) -> Html:
 
 
 def _key(key: str) -> Html:
-    forward, left = DIRECTIONS[key]
+    way = SIDEWAYS[key] if key in SIDEWAYS else DIRECTIONS[key]
     keys = f"{key} {ARROWS.get(key, '')}".strip()
     return html(
-        "<button type='button' class='g-btn' data-keys='{}' data-steer='{:g} {:g}' aria-label='{}'>{}</button>",
+        "<button type='button' class='g-btn' data-keys='{}' data-steer='{:g} {:g} {:g}' aria-label='{}'>{}</button>",
         keys,
-        forward,
-        left,
+        *way,
         WORDS[key],
         SIGNS[key],
     )

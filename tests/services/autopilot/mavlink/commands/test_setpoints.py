@@ -5,7 +5,7 @@ import math
 import pytest
 
 from schemas.messages import Mode, Vector3
-from tests.services.autopilot.mavlink.rig import OTHER, PLANE, ROVER, Rig, long, of, texts
+from tests.services.autopilot.mavlink.rig import MECANUM_FACTS, OTHER, PLANE, ROVER, Rig, long, of, texts
 from uvf.maths.rotations import from_euler
 from uvf.mavlink import dialect as mav
 from uvf.runtime.messages.convert import quaternion
@@ -28,8 +28,8 @@ def attitude(roll, pitch, thrust, mask=0b111):
     return mav.MAVLink_set_attitude_target_message(0, PLANE, 1, mask, list(from_euler(roll, pitch, 1.0)), 0, 0, 0, thrust)
 
 
-def rig_in(mode=Mode.MODE_OFFBOARD):
-    rig = Rig()
+def rig_in(mode=Mode.MODE_OFFBOARD, **settings):
+    rig = Rig(**settings)
     rig.plane.status.mode = rig.rover.status.mode = mode
     rig.plane.nav.wind.CopyFrom(Vector3(x=-5.0))
     rig.run()
@@ -206,6 +206,16 @@ def test_a_rover_drives_by_velocities_of_its_body_or_over_ground():
     assert (east.linear, east.angular) == pytest.approx((0.3, 0.0), abs=1e-6)
     north = said(rig, local(VELOCITY, velocity=(0.3, 0.0, 0.0), system=ROVER), "drive")
     assert north.linear == pytest.approx(0.0, abs=1e-6) and north.angular > 1.0
+
+
+def test_a_rover_that_goes_sideways_does_so():
+    rig = rig_in(rover=MECANUM_FACTS)
+    rig.rover.nav.orientation.CopyFrom(quaternion(from_euler(0.0, 0.0, 0.0)))  # looks east
+    right = said(rig, local(0b010111000111, velocity=(0.3, 0.2, 0.0), frame=BODY, rate=0.5, system=ROVER), "drive")
+    assert (right.linear, right.angular, right.lateral) == pytest.approx((0.3, -0.5, -0.2))
+    north = said(rig, local(VELOCITY, velocity=(0.3, 0.0, 0.0), system=ROVER), "drive")
+    assert (north.linear, north.angular, north.lateral) == pytest.approx((0.0, 0.0, 0.3), abs=1e-6)
+    assert said(rig, local(0b010111000111, velocity=(0.0, NAN, 0.0), frame=BODY, system=ROVER), "drive") is None
 
 
 @pytest.mark.parametrize("mode", [Mode.MODE_MANUAL, Mode.MODE_HOLD, Mode.MODE_MISSION])
