@@ -103,9 +103,10 @@ def _inspect_body(found: Inspection, urdf: Path) -> None:
         found.faults += [line for line in [str(error)] if line not in found.faults]  # told already where a sensor sits on a link
         return
     ground = found.file.ground if found.file is not None else None
-    wheels = ground.drive.joints if ground is not None else ()
-    faults = [str(fault) for fault in (*wheel_faults(model, wheels), *model_faults(model))]
+    wheels = ground.drive.all_wheels if ground is not None else ()
+    steering = tuple(ground.drive.steered_wheels) if ground is not None else ()
+    faults = [str(fault) for fault in (*wheel_faults(model, wheels, steering), *model_faults(model))]
     found.faults += [line for line in dict.fromkeys(faults) if line not in found.faults]
-    if found.file is not None and ground is not None and len(model.roots) == 1 and all(w in model.joints for w in wheels):
+    if found.file is not None and ground is not None and len(model.roots) == 1 and all(j in model.joints for j in (*wheels, *steering)):
         found.faults += body_faults(model, found.file, found.folder / "vehicle.yaml")
         found.notes += body_notes(model, found.file)

@@ -21,16 +21,18 @@ class DriveCommand(_message.Message):
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., linear: _Optional[float] = ..., angular: _Optional[float] = ..., lateral: _Optional[float] = ...) -> None: ...
 
 class WheelCommand(_message.Message):
-    __slots__ = ("timestamp", "left", "right", "each")
+    __slots__ = ("timestamp", "left", "right", "each", "steering")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     LEFT_FIELD_NUMBER: _ClassVar[int]
     RIGHT_FIELD_NUMBER: _ClassVar[int]
     EACH_FIELD_NUMBER: _ClassVar[int]
+    STEERING_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     left: float
     right: float
     each: _containers.RepeatedScalarFieldContainer[float]
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., left: _Optional[float] = ..., right: _Optional[float] = ..., each: _Optional[_Iterable[float]] = ...) -> None: ...
+    steering: float
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., left: _Optional[float] = ..., right: _Optional[float] = ..., each: _Optional[_Iterable[float]] = ..., steering: _Optional[float] = ...) -> None: ...
 
 class SurfaceCommand(_message.Message):
     __slots__ = ("timestamp", "aileron", "elevator", "rudder", "throttle", "flap", "brake")

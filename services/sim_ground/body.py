@@ -21,20 +21,28 @@ class Touch(NamedTuple):
     bearing: float
 
 
-class LinkMotion(NamedTuple):
-    """Of a link's centre of mass in the world: position (3,) [m], orientation (4,), velocity [m/s], angular velocity [rad/s], each (3,)."""
+class LinkPose(NamedTuple):
+    """Of a link's centre of mass in the world: position (3,) [m], orientation (4,)."""
 
     position: Floats
     orientation: Floats
-    velocity: Floats
-    angular_velocity: Floats
+
+
+class BodyPose(NamedTuple):
+    """Of a body's centre of mass in the world: position (3,) [m], orientation xyzw (4,); velocity [m/s], angular velocity [rad/s]."""
+
+    position: Three
+    xyzw: Four
+    velocity: Three
+    angular_velocity: Three
 
 
 class BodyState(NamedTuple):
     """Motion of base_link: the point on the floor under the axle's middle.
 
     position: (3,) m, world; velocity: (3,) m/s, world; world_from_body: wxyz; angular_velocity: (3,) rad/s, body (FLU);
-    wheel_angles: of each driven wheel, as its file has them [rad] since the start, unwrapped; wheel_speeds likewise [rad/s].
+    wheel_angles: of each driven wheel, as its file has them [rad] since the start, unwrapped; wheel_speeds likewise [rad/s];
+    steered_to: of each joint that steers [rad], as the URDF counts.
     """
 
     position: Floats
@@ -43,6 +51,7 @@ class BodyState(NamedTuple):
     angular_velocity: Floats
     wheel_angles: tuple[float, ...]
     wheel_speeds: tuple[float, ...]
+    steered_to: tuple[float, ...] = ()
 
 
 @compiled

@@ -58,7 +58,7 @@ def _join(site: Scenario, surroundings: Surroundings, name: str, model: str, sta
         raise BadInput(f"'{model}' is no ground vehicle; this is the ground simulator")
     member = MissionVehicle(name, Vehicle(model=model, start=StartPose(x=x, y=y, yaw=yaw), system_id=1), file, site.vehicles_folder / model)
     urdf = member.folder / file.ground.urdf
-    check_urdf(urdf, file.ground.drive.joints)
+    check_urdf(urdf, file.ground.drive.all_wheels, file.ground.drive.steered_wheels)
     _check_rates(member, file.ground)
     return JoiningVehicle(
         BodyPlacement(file.ground, engine_urdf(urdf), start, z), Rig(site, member, file.ground, surroundings.still), load_urdf(urdf)
@@ -73,7 +73,7 @@ def _checked(site: Scenario, member: MissionVehicle, footing: Footing) -> float:
     """z [m] of the ground at the start; of a slope, so much above that no wheel begins in it. Raises for what would fail in the engine."""
     body = member.file.ground
     assert body is not None
-    check_urdf(member.folder / body.urdf, body.drive.joints)
+    check_urdf(member.folder / body.urdf, body.drive.all_wheels, body.drive.steered_wheels)
     _check_rates(member, body)
     start = member.entry.start
     room, height, slope = footing.at(start.x, start.y)

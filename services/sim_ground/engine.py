@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from services.sim_ground.body import Four, LinkMotion, Three
+from services.sim_ground.body import BodyPose, LinkPose, Three
 from services.sim_ground.touching import EngineContact
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.shapes.solid import Solid
@@ -20,18 +20,10 @@ with c_errors_discarded():
 Floats = NDArray[np.float64]
 
 BASE = -1  # the link that is the root
+STIFF = 1e3  # N m
 ITERATIONS = 50  # of the solver, in a step
 MOVING, STANDING = (1, -1), (2, -3)
 """The engine's own filters (group, mask): what stands does not touch what stands."""
-
-
-class BodyPose(NamedTuple):
-    """Of a body's centre of mass in the world: position (3,) [m], orientation xyzw (4,); velocity [m/s], angular velocity [rad/s]."""
-
-    position: Three
-    xyzw: Four
-    velocity: Three
-    angular_velocity: Three
 
 
 class JointMotion(NamedTuple):
@@ -145,14 +137,25 @@ class PhysicsEngine:
             physicsClientId=self.client,
         )
 
+    def hold(self, index: int, joints: Sequence[int], angles: Sequence[float]) -> None:
+        """Holds joints at angles [rad], with whatever that takes."""
+        pybullet.setJointMotorControlArray(
+            index,
+            joints,
+            pybullet.POSITION_CONTROL,
+            targetPositions=angles,
+            forces=[STIFF] * len(joints),
+            physicsClientId=self.client,
+        )
+
     def joint_motions(self, index: int, joints: Sequence[int]) -> list[JointMotion]:
         """How joints stand and turn."""
         return [JointMotion(j[0], j[1], j[3]) for j in pybullet.getJointStates(index, joints, physicsClientId=self.client)]
 
-    def link_motions(self, index: int, links: Sequence[int]) -> list[LinkMotion]:
-        """Where links are and how they move."""
-        states: Any = pybullet.getLinkStates(index, links, computeLinkVelocity=1, physicsClientId=self.client)
-        return [LinkMotion(np.array(s[0]), _wxyz(s[1]), np.array(s[6]), np.array(s[7])) for s in states]
+    def link_poses(self, index: int, links: Sequence[int]) -> list[LinkPose]:
+        """Where links are. How they move the engine does not tell: what it tells is turned by as much as a wheel turns in a step."""
+        states: Any = pybullet.getLinkStates(index, links, physicsClientId=self.client)
+        return [LinkPose(np.array(s[0]), _wxyz(s[1])) for s in states]
 
     def stop_joint(self, index: int, joint: int, angle: float) -> None:
         """Puts a joint at rest at an angle [rad]."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.sim_ground.motor import WheelMotor
+from services.sim_ground.steering import SteeringGear
 from services.sim_ground.treads import Treads
 
 Floats = NDArray[np.float64]
@@ -31,12 +32,9 @@ class LoadedVehicle:
     """Friction of the driven wheels where the engine's own is not for them: those that scrub."""
     soles: frozenset[int]
     """Links with which it stands on a level floor: wheels and castors."""
+    steering: SteeringGear | None = None
     grip: tuple[float, float] = (1.0, 1.0)
     """Share of it that the wheels of the left and the right side have now."""
-
-    def by_side(self, sides: tuple[float, float]) -> list[float]:
-        """What holds for the left and the right side, wheel by wheel."""
-        return [sides[0] if is_left else sides[1] for is_left in self.on_left]
 
     def by_wheel(self, speeds: Sequence[float]) -> list[float]:
         """Speeds of the drive's channels [rad/s] wheel by wheel; 0 where there are not as many as it has, or one is no number."""
@@ -46,8 +44,9 @@ class LoadedVehicle:
 
 @dataclass(frozen=True)
 class Saved:
-    """A state of the engine by its number; the motors' references [rad/s] and the treads' deflections [m] by vehicle."""
+    """A state of the engine by its number; by vehicle the motors' references [rad/s], the treads' deflections [m], the steering [rad]."""
 
     state: int
     references: dict[str, list[float]]
     deflections: dict[str, Floats]
+    steering: dict[str, float]

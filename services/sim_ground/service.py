@@ -44,7 +44,7 @@ class GroundWorld(Stageable, Protocol):
     rate: float
     """Physics steps a second."""
 
-    def advance(self, wheels: Mapping[str, Sequence[float]], duration: float, since: float) -> None:
+    def advance(self, wheels: Mapping[str, Sequence[float]], duration: float, since: float, steering: Mapping[str, float]) -> None:
         """Moves the world from simulation time ``since`` [s] by ``duration`` [s] with these wheel speed commands [rad/s]."""
         ...
 
@@ -145,7 +145,7 @@ class SimGround(Service):
         self._world.guide(self._guests)
         for name in self._stage.rigs:
             self._world.set_grip(name, self._faults.grip(t, name))
-        self._advance(t, {name: speeds_of(c) for name, c in now.commands.items() if not self._is_flat(name)})
+        self._advance(t, {name: c for name, c in now.commands.items() if not self._is_flat(name)})
         out, n, stage = self._read(t), round(t * self.hz), self._stage
         flying = [o.name for o in now.flying.objects] if now.flying else []
         out.spawn = [stage.spawn(r, flying) for r in now.spawn]
@@ -186,13 +186,14 @@ class SimGround(Service):
         """s; the clock, unless a state was restored: then that of the state and what has passed since."""
         return (round(t * self.hz) - self._stage.late) / self.hz if self._stage.late else t
 
-    def _advance(self, t: float, wheels: Mapping[str, Sequence[float]]) -> None:
+    def _advance(self, t: float, commands: Mapping[str, WheelCommand]) -> None:
         """To ``t`` [s], looking at those who read faster than this service steps after each step of the physics."""
         quick = [name for name, rig in self._stage.rigs.items() if rig.is_quick]
         parts = round(self._world.rate / self.hz) if quick else 1
         part = 1 / self.hz / parts
+        wheels, steering = {name: speeds_of(c) for name, c in commands.items()}, {name: c.steering for name, c in commands.items()}
         for left in range(parts - 1, -1, -1):
-            self._world.advance(wheels, part, t - (left + 1) * part)
+            self._world.advance(wheels, part, t - (left + 1) * part, steering)
             for name in quick if left else ():
                 self._stage.rigs[name].glance(self._sensors_time(t) - left * part, self._world.state(name))
 

@@ -6,6 +6,7 @@ are put where they are at each physics step, with the velocity they have, so tha
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -16,21 +17,24 @@ from services.sim_ground.engine import PhysicsEngine
 from services.sim_ground.guest import Course
 from services.sim_ground.loaded import LoadedVehicle, Saved
 from services.sim_ground.motor import WheelMotor
+from services.sim_ground.steering import SteeringGear
 from services.sim_ground.touching import FLOOR, SOLE, Bodies
-from services.sim_ground.treads import Treads
+from services.sim_ground.treads import Rolling, Treads
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.rotations import IDENTITY, from_euler, multiply, rotate
 from uvf.models.shapes.solid import Keyframes, Solid, pose_at
+from uvf.models.vehicle.drive import AckermannFile
 from uvf.models.vehicle.file import Friction, GroundBody
 
 Floats = NDArray[np.float64]
 AWAY = np.array((0.0, 0.0, 1e4))  # m
 DEEP = 2e-3  # m, from which on one body is inside another
 FALLEN = 0.5  # cosine of the tilt from which on a vehicle no longer stands on its wheels
-FREE = 0.0  # friction across rollers
+FREE = 0.0  # friction across rollers, and along wheels that nothing drives
 SAG = 1e-3  # m, by which tyres of several wheels a side give under the vehicle's weight
 SETTLES = 0.7  # damping ratio of that
 STILL = (0.0, 0.0, 0.0)
+STRAIGHT: Mapping[str, float] = {}
 SETTLING = 0.3  # s of physics before the start: the wheels sink into their contacts
 
 
@@ -77,18 +81,24 @@ class BulletWorld:
         joints, friction, drive = self.engine.joints(index), vehicle.body.friction, vehicle.body.drive
         wheels = tuple(joints[name] for name in drive.joints)
         self._set_friction(index, friction, wheels, [j for j in joints.values() if j not in wheels])
-        treads = self._treads(index, vehicle.body, wheels)
         com_in_base = self.engine.centre_of_mass(index)
-        soles = self._soles(index, vehicle, com_in_base)
+        self._place(index, replace(vehicle, start=(0.0, 0.0, 0.0), z=0.0), com_in_base)
+        soles = frozenset(link for link, _ in self.engine.near(index, self._floor, SOLE))
+        steering = self._steering(index, drive, joints) if isinstance(drive, AckermannFile) else None
+        treads = self._treads(index, vehicle.body, wheels, [joints[name] for name in drive.steered_wheels.values()])
         self._place(index, vehicle, com_in_base)
         motors = tuple(WheelMotor(vehicle.body.motor, 1 / self.rate) for _ in wheels)
         most = max(friction.mu, friction.mu2)
-        return LoadedVehicle(index, drive.on_left, drive.channels, wheels, motors, com_in_base, most, treads, soles)
+        return LoadedVehicle(index, drive.on_left, drive.channels, wheels, motors, com_in_base, most, treads, soles, steering)
 
-    def _soles(self, index: int, vehicle: BodyPlacement, com_in_base: tuple[Floats, Floats]) -> frozenset[int]:
-        """The links with which it stands on a level floor."""
-        self._place(index, replace(vehicle, start=(0.0, 0.0, 0.0), z=0.0), com_in_base)
-        return frozenset(link for link, _ in self.engine.near(index, self._floor, SOLE))
+    def _steering(self, index: int, drive: AckermannFile, joints: Mapping[str, int]) -> SteeringGear:
+        """Of a vehicle that stands at the origin."""
+        steers = [joints[name] for name in drive.steered]
+        wheels = self.engine.link_poses(index, [joints[name] for name in drive.steered.values()])
+        places = [(float(wheel.position[0]), float(wheel.position[1])) for wheel in wheels]
+        links = zip(steers, self.engine.link_poses(index, steers), strict=True)
+        signs = [float(np.sign(rotate(link.orientation, self.engine.axle(index, joint))[2])) for joint, link in links]
+        return SteeringGear(steers, places, signs, drive.kinematics, drive.steering_rate)
 
     def _set_friction(self, index: int, friction: Friction, wheels: Sequence[int], sliding: Sequence[int]) -> None:
         """The floor's coefficient is 1 and the engine multiplies both, so that the vehicle's alone count."""
@@ -99,13 +109,13 @@ class BulletWorld:
         for link in sliding:
             self.engine.set_dynamics(index, link, lateralFriction=friction.castor)
 
-    def _treads(self, index: int, body: GroundBody, wheels: Sequence[int]) -> Treads | None:
-        """None where wheels roll on and the engine's own friction does.
+    def _treads(self, index: int, body: GroundBody, driven: Sequence[int], steered: Sequence[int]) -> Treads | None:
+        """None where wheels roll on and the engine's own friction does. driven, steered: links of wheels; steered ones roll freely.
 
         Tyres of several wheels a side give, so that all of them carry: a rigid body on four points stands on any three.
         """
-        drive = body.drive
-        if not drive.scrubs and drive.holds_at is None:
+        drive, wheels = body.drive, [*driven, *steered]
+        if not drive.scrubs and drive.holds_at is None and not steered:
             return None
         mass = self.engine.mass(index) / len(wheels)
         stiffness = mass * GRAVITY / SAG
@@ -113,9 +123,10 @@ class BulletWorld:
         for wheel in wheels:
             self.engine.set_dynamics(index, wheel, lateralFriction=0.0, contactStiffness=stiffness, contactDamping=damping)
         axles = np.array([self.engine.axle(index, w) for w in wheels])
-        if drive.holds_at is None:
-            return Treads(wheels, axles, (body.friction.mu, body.friction.mu2))
-        return Treads(wheels, axles, (body.friction.mu, FREE), drive.holds_at)
+        mu, mu2 = body.friction.mu, body.friction.mu2 if drive.holds_at is None else FREE
+        grip = np.array([(mu, mu2)] * len(driven) + [(FREE, mu2)] * len(steered))
+        on_left = drive.on_left + tuple(link.position[1] > 0.0 for link in self.engine.link_poses(index, steered))
+        return Treads(wheels, axles, grip, on_left, drive.holds_at or (0.0,) * len(wheels))
 
     def _place(self, index: int, vehicle: BodyPlacement, com_in_base: tuple[Floats, Floats]) -> None:
         x, y, yaw = vehicle.start
@@ -128,14 +139,18 @@ class BulletWorld:
         loaded = self._vehicles[vehicle]
         if shares != loaded.grip:
             loaded.grip = shares
-            for wheel, share in zip(loaded.wheels, loaded.by_side(shares), strict=True):
+            for wheel, is_left in zip(loaded.wheels, loaded.on_left, strict=True):
                 if loaded.treads is None:
+                    share = shares[0] if is_left else shares[1]
                     self.engine.set_dynamics(loaded.index, wheel, lateralFriction=share * loaded.friction)
 
-    def advance(self, wheels: Mapping[str, Sequence[float]], duration: float, since: float = 0.0) -> None:
+    def advance(
+        self, wheels: Mapping[str, Sequence[float]], duration: float, since: float = 0.0, steering: Mapping[str, float] = STRAIGHT
+    ) -> None:
         """Moves the world by ``duration`` [s]; a vehicle without a finite command brakes its wheels to a stop.
 
         since: simulation time [s] at the beginning, for scripted solids. wheels: speed commands [rad/s], one for each channel of a drive.
+        steering: of cars [rad, left positive]; one that is not named keeps its steering where it is.
         """
         wanted = {name: vehicle.by_wheel(wheels.get(name, ())) for name, vehicle in self._vehicles.items()}
         for n in range(round(duration * self.rate)):
@@ -143,6 +158,8 @@ class BulletWorld:
             self._move_guests(since + n / self.rate)
             for name, vehicle in self._vehicles.items():
                 self._drawn[name] = self._drawn.get(name, 0.0) + self._drive(vehicle, wanted[name])
+                if vehicle.steering is not None:
+                    self.engine.hold(vehicle.index, vehicle.steering.joints, vehicle.steering.turn(steering.get(name, nan), 1 / self.rate))
                 if vehicle.treads is not None:
                     self._push_off(vehicle, vehicle.treads)
             self.engine.step()
@@ -161,9 +178,11 @@ class BulletWorld:
 
     def _push_off(self, vehicle: LoadedVehicle, treads: Treads) -> None:
         """Friction on wheels that scrub."""
-        contacts, links = self.engine.contacts(vehicle.index), self.engine.link_motions(vehicle.index, vehicle.wheels)
-        for wheel, force, place in treads.pushes(contacts, links, vehicle.by_side(vehicle.grip), 1 / self.rate):
-            self.engine.push(vehicle.index, wheel, force, place)
+        index = vehicle.index
+        spins = [joint.speed for joint in self.engine.joint_motions(index, treads.wheels)]
+        rolling = Rolling(self.engine.pose(index), self.engine.link_poses(index, treads.wheels), spins)
+        for wheel, force, place in treads.pushes(self.engine.contacts(index), rolling, vehicle.grip, 1 / self.rate):
+            self.engine.push(index, wheel, force, place)
 
     def _move_scripted(self, t: float) -> None:
         """The engine carries a body on by its velocity in the step."""
@@ -191,7 +210,13 @@ class BulletWorld:
         """Motion of base_link and the wheels now."""
         loaded = self._vehicles[vehicle]
         joints = self.engine.joint_motions(loaded.index, loaded.wheels)
-        return BodyState(*self._motion(loaded), wheel_angles=tuple(j.angle for j in joints), wheel_speeds=tuple(j.speed for j in joints))
+        steers = loaded.steering.joints if loaded.steering is not None else ()
+        return BodyState(
+            *self._motion(loaded),
+            wheel_angles=tuple(j.angle for j in joints),
+            wheel_speeds=tuple(j.speed for j in joints),
+            steered_to=tuple(j.angle for j in self.engine.joint_motions(loaded.index, steers)) if steers else (),
+        )
 
     def _motion(self, loaded: LoadedVehicle) -> Motion:
         return base_motion(*self.engine.pose(loaded.index), *loaded.com_in_base)
@@ -272,7 +297,8 @@ class BulletWorld:
         """Saves all that the next steps depend on."""
         references = {name: [m.reference for m in v.motors] for name, v in self._vehicles.items()}
         deflections = {name: v.treads.deflections.copy() for name, v in self._vehicles.items() if v.treads is not None}
-        return Saved(self.engine.save(list(self._bodies.names)), references, deflections)
+        steering = {name: v.steering.angle for name, v in self._vehicles.items() if v.steering is not None}
+        return Saved(self.engine.save(list(self._bodies.names)), references, deflections, steering)
 
     def restore(self, saved: Saved) -> None:
         """Restores a saved state; the same bodies must be there as then."""
@@ -284,6 +310,10 @@ class BulletWorld:
             treads = self._vehicles[name].treads
             assert treads is not None
             treads.deflections[:] = deflections
+        for name, angle in saved.steering.items():
+            gear = self._vehicles[name].steering
+            assert gear is not None
+            gear.angle = angle
 
     def forget(self, saved: Saved) -> None:
         """Releases a saved state."""

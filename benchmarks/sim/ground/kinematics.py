@@ -1,5 +1,7 @@
 """Each ground vehicle's simulated drives against the closed form: straight, arcs of three radii, a turn on the spot, one wheel stopped.
 
+Cars drive the arcs that they can, and no more.
+
 The wheels are commanded by the vehicle's own acceleration limits from rest to rest on the level floor; the closed form is the chain
 of arcs of these commands. ``position %`` is the distance between both ends over the way of the faster wheel, ``heading %`` the
 difference of headings over the turn (over a full turn where there is none). ``slip %`` is that part of the position's error that is
@@ -12,10 +14,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
+import msgspec
 import numpy as np
 
 from services.sim_ground.world import BodyPlacement, BulletWorld
-from uvf.control.drive_limits import DriveLimits, VelocityRamp
+from uvf.control.steered_ramp import velocity_ramp
 from uvf.maths.kinematics import Twist, WheelSpeeds, move
 from uvf.maths.rotations import to_euler, wrap
 from uvf.maths.se2 import Pose2
@@ -58,9 +61,12 @@ def drives(body: GroundBody) -> Iterator[Drive]:
     """At constant speed after the ramp; the times are those of the speed that is asked for."""
     linear, angular = SHARE * body.max_linear, SHARE * body.max_angular
     yield Drive("straight 10 m", Twist(linear, 0.0), 10.0 / linear)
-    for radius in RADII:
+    tightest = body.drive.kinematics.turning_radius
+    for radius in (r for r in RADII if r > tightest):
         speed = min(linear, radius * angular)
         yield Drive(f"arc {radius:g} m", Twist(speed, speed / radius), np.pi * radius / speed)
+    if tightest:
+        return
     yield Drive("spot turn", Twist(0.0, angular), 2 * np.pi / angular)
     turning = min(angular, linear / (body.drive.track / 2))
     yield Drive("left wheel stopped", Twist(turning * body.drive.track / 2, turning), 2 * np.pi / turning)
@@ -69,14 +75,14 @@ def drives(body: GroundBody) -> Iterator[Drive]:
 def drive(body: GroundBody, urdf: Path, wanted: Drive) -> Driven:
     """One drive in PyBullet alone: poses asked for, rolled by the wheels, and true."""
     world = BulletWorld([], {"one": BodyPlacement(body, engine_urdf(urdf), (0.0, 0.0, 0.0))})
-    wheels, ramp = body.drive.kinematics, VelocityRamp(_limits(body, wanted.twist))
+    wheels, ramp = body.drive.kinematics, velocity_ramp(_with_curvature_kept(body, wanted.twist))
     first = _pose(world)
     driven = Driven([first], [first], [first])
     before = world.state("one").wheel_angles
     for n in range(round((wanted.seconds + REST) / DT)):
         asked = wanted.twist if n * DT < wanted.seconds else Twist(0.0, 0.0)
         command = ramp.lead(asked, DT)
-        world.advance({"one": wheels.wheels(command)}, DT)
+        world.advance({"one": wheels.wheels(command)}, DT, steering={"one": ramp.steering})
         angles = world.state("one").wheel_angles
         turned = WheelSpeeds(angles[0] - before[0], angles[1] - before[1])
         before = angles
@@ -87,13 +93,13 @@ def drive(body: GroundBody, urdf: Path, wanted: Drive) -> Driven:
     return driven
 
 
-def _limits(body: GroundBody, twist: Twist) -> DriveLimits:
-    """The vehicle's, lowered so that speed and turn are reached together and the curvature stays."""
+def _with_curvature_kept(body: GroundBody, twist: Twist) -> GroundBody:
+    """With accelerations so low that speed and turn are reached together."""
     linear, angular = body.max_linear_acceleration, body.max_angular_acceleration
     if twist.linear and twist.angular:
         rise = max(twist.linear / linear, twist.angular / angular)  # s
         linear, angular = twist.linear / rise, twist.angular / rise
-    return DriveLimits(body.max_linear, body.max_angular, linear, angular)
+    return msgspec.structs.replace(body, max_linear_acceleration=linear, max_angular_acceleration=angular)
 
 
 def _pose(world: BulletWorld) -> Pose2:

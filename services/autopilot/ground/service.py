@@ -33,7 +33,8 @@ from services.autopilot.ground.safety import GroundActivity, GroundFailsafeMonit
 from services.autopilot.multiplexing import DISARMED_OFFBOARD, Once
 from services.autopilot.parameter_state import ToldParams
 from services.autopilot.safe_state import standing
-from uvf.control.drive_limits import DriveLimits, VelocityRamp, within_limits
+from uvf.control.drive_limits import within_limits
+from uvf.control.steered_ramp import velocity_ramp
 from uvf.maths.kinematics import Twist
 from uvf.models.vehicle.file import GroundBody
 from uvf.runtime.contract.service import Service
@@ -79,9 +80,7 @@ class GroundAutopilot(Service):
         self._made_with = (body, home, system_id, looks)
         self._system_id = system_id
         self._drive = body.drive.kinematics
-        self._ramp = VelocityRamp(
-            DriveLimits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration)
-        )
+        self._ramp = velocity_ramp(body)
         self._armed, begins, items = job
         self._mode: int = Mode.MODE_MISSION if begins else Mode.MODE_HOLD
         self._stop = StopStatus()
@@ -275,7 +274,8 @@ class GroundAutopilot(Service):
         if self._safety.halts(wanted if _goes(wanted) else self._ramp.velocity):
             wanted = Twist(0.0, wanted.angular)
             self._ramp.stand()
-        return wheel_command(t, self._drive.wheels(self._ramp.lead(wanted, 1.0 / self.hz)))
+        speeds = self._drive.wheels(self._ramp.lead(wanted, 1.0 / self.hz))
+        return wheel_command(t, speeds, self._ramp.steering)
 
     def _report(self, t: float, position: Point | None, out: interface.Outputs) -> None:
         self._steps += 1

@@ -31,6 +31,9 @@ def approach(current: float, wanted: float, most: float) -> float:
 class VelocityRamp:
     """The commanded velocity, moved towards the requested one within the acceleration limits."""
 
+    steering = 0.0
+    """rad; nothing is steered."""
+
     def __init__(self, limits: DriveLimits) -> None:
         self.limits = limits
         self.velocity = Twist(0.0, 0.0)

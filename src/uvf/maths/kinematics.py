@@ -62,6 +62,11 @@ class DriveKinematics(Protocol):
         """Whether it can move to the side without turning."""
         ...
 
+    @property
+    def turning_radius(self) -> float:
+        """Of the tightest circle that base_link can drive [m]; 0: it turns on the spot."""
+        ...
+
     def twist(self, wheels: Sequence[float]) -> Twist:
         """Velocity of the body at these speeds [rad/s]."""
         ...
@@ -91,6 +96,11 @@ class DifferentialDrive:
     def goes_sideways(self) -> bool:
         """No."""
         return False
+
+    @property
+    def turning_radius(self) -> float:
+        """None."""
+        return 0.0
 
     def twist(self, wheels: Sequence[float]) -> Twist:
         """Forward kinematics: v = r (w_r + w_l) / 2, omega = r (w_r - w_l) / l."""

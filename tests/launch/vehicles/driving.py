@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from services.sim_ground.world import BodyPlacement, BulletWorld
+from uvf.control.steered_ramp import velocity_ramp
 from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import to_euler
 from uvf.models.urdf.model import engine_urdf
@@ -26,14 +27,12 @@ def drive(folder, twist, duration):
     ground = load_vehicle(folder.parent, folder.name).ground
     kinematics = ground.drive.kinematics
     world = BulletWorld([], {"it": BodyPlacement(ground, engine_urdf(folder / ground.urdf), (0.0, 0.0, 0.0))})
-    most = np.array((ground.max_linear_acceleration, ground.max_angular_acceleration, ground.max_linear_acceleration)) * STEP
-    command, expected, turned, last, tilt = np.zeros(3), np.zeros(3), 0.0, 0.0, 0.0
+    ramp, expected, turned, last, tilt = velocity_ramp(ground), np.zeros(3), 0.0, 0.0, 0.0
     try:
         for i in range(round((duration + 2.0) / STEP)):
-            wanted = np.array(Twist(*twist)) if i * STEP < duration else np.zeros(3)
-            command = command + np.clip(wanted - command, -most, most)
+            command = ramp.lead(Twist(*twist) if i * STEP < duration else Twist(0.0, 0.0), STEP)
             expected = rolled(expected, command)
-            world.advance({"it": kinematics.wheels(Twist(*command))}, STEP)
+            world.advance({"it": kinematics.wheels(command)}, STEP, steering={"it": ramp.steering})
             state = world.state("it")
             roll, pitch, yaw = to_euler(state.world_from_body)
             turned, last, tilt = turned + (yaw - last + np.pi) % (2 * np.pi) - np.pi, yaw, max(tilt, abs(roll), abs(pitch))

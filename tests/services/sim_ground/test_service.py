@@ -35,7 +35,7 @@ class StandingWorld:
     def motor_energy(self, vehicle):
         return 0.0
 
-    def advance(self, wheels, duration, since):
+    def advance(self, wheels, duration, since, steering):
         self.told.append((dict(wheels), duration, since))
 
     def state(self, vehicle):

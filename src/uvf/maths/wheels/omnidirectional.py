@@ -79,6 +79,11 @@ class OmnidirectionalDrive:
         return True
 
     @property
+    def turning_radius(self) -> float:
+        """None."""
+        return 0.0
+
+    @property
     def track(self) -> float:
         """Of the differential drive whose wheels turn as fast when both turn on the spot [m]."""
         return 2.0 * self.wheel_radius * float(np.abs(self._wheels_from_twist[:, 2]).mean())

@@ -11,12 +11,13 @@ from scipy.spatial import ConvexHull, QhullError
 from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import rotate
 from uvf.maths.wheels.scrubbing import scrubbing, shared_loads
+from uvf.maths.wheels.steered import wheel_steering
 from uvf.models.checks.sensor_rules import sensor_faults, sensor_notes
 from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.inertia import whole
 from uvf.models.urdf.robot import Joint, UrdfModel
-from uvf.models.vehicle.drive import DifferentialDriveFile, MecanumFile, OmniFile, SkidSteerFile
+from uvf.models.vehicle.drive import AckermannFile, MecanumFile, OmniFile, OneAxle, SkidSteerFile
 from uvf.models.vehicle.file import GroundBody, VehicleFile
 from uvf.models.yaml_data import BadInput, FileLocation
 
@@ -36,7 +37,7 @@ ROUND = np.column_stack(
 
 
 class CheckedWheel(NamedTuple):
-    """A driven wheel: its joint, its side, and the direction in which it rolls [rad]."""
+    """A wheel: its joint, what to call it, and the direction in which it rolls [rad]."""
 
     joint: Joint
     side: str
@@ -56,7 +57,12 @@ class CheckedBody:
             for name, on_left, rolls_to in zip(drive.joints, drive.on_left, drive.rolls_to, strict=True)
             if (joint := model.joints[name]).child in self.poses and joint.parent in self.poses
         ]
-        self.turning = {name for wheel in self.wheels for name in model.below(wheel.joint.child)}
+        self.steered = [
+            CheckedWheel(wheel, "steered", 0.0)
+            for name in drive.steered_wheels.values()
+            if (wheel := model.joints[name]).child in self.poses
+        ]
+        self.turning = {name for wheel in (*self.wheels, *self.steered) for name in model.below(wheel.joint.child)}
 
     def collisions(self, names: list[str]) -> list[Solid]:
         """The collision shapes of the links of these names, in base_link."""
@@ -65,7 +71,7 @@ class CheckedBody:
 
     @property
     def rest(self) -> list[str]:
-        """The names of the links that are not part of a driven wheel."""
+        """The names of the links that are not part of a driven or steered wheel."""
         return [name for name in self.poses if name not in self.turning]
 
 
@@ -79,8 +85,9 @@ def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
     try:
         return [
             *_base_faults(body),
-            *(line for wheel in body.wheels for line in _wheel_faults(body, wheel, ground)),
+            *(line for wheel in (*body.wheels, *body.steered) for line in _wheel_faults(body, wheel, ground)),
             *(_omni_faults(body, file.ground.drive, ground) if isinstance(file.ground.drive, OmniFile) else _axle_faults(body, ground)),
+            *(_steering_faults(body, file.ground.drive, ground) if isinstance(file.ground.drive, AckermannFile) else ()),
             *_speed_faults(file.ground, ground),
             *_outline_faults(body, ground),
             *_balance_faults(body),
@@ -145,7 +152,7 @@ def _wheel_faults(body: CheckedBody, wheel: CheckedWheel, ground: FileLocation) 
 def _axle_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:
     """Wheels on the other side, a wrong track, a base_link that does not lie under the middle of all wheels."""
     drive = body.ground.drive
-    assert isinstance(drive, DifferentialDriveFile | SkidSteerFile | MecanumFile)
+    assert isinstance(drive, OneAxle | SkidSteerFile | MecanumFile)
     centres = {side: [body.poses[w.joint.child].translation for w in body.wheels if w.side == side] for side in ("left", "right")}
     if not all(centres.values()):
         return
@@ -162,9 +169,7 @@ def _axle_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:
     if isinstance(drive, SkidSteerFile):
         yield from _scrubbing_faults(body, drive, np.array(centres["left"] + centres["right"]), ground)
     else:
-        yield from _off_centre(
-            body, (left + right) / 2, f"the middle of the {'axle' if isinstance(drive, DifferentialDriveFile) else 'wheels'} is"
-        )
+        yield from _off_centre(body, (left + right) / 2, f"the middle of the {'axle' if isinstance(drive, OneAxle) else 'wheels'} is")
     if isinstance(drive, MecanumFile):
         yield from _wheelbase_faults(drive, centres, ground)
 
@@ -176,6 +181,27 @@ def _wheelbase_faults(drive: MecanumFile, centres: dict[str, list[Floats]], grou
             yield f"{ground.at('drive', side)}: the first wheel is at x = {front[0]:.3f} m, behind the second; name the front wheel first"
         elif abs(between - drive.wheelbase) > SAME * drive.wheelbase:
             yield f"{ground.at('drive', 'wheelbase')}: {drive.wheelbase:g} m, but the {side} wheels are {between:.4g} m apart in the URDF"
+
+
+def _steering_faults(body: CheckedBody, drive: AckermannFile, ground: FileLocation) -> Iterator[str]:
+    """Steered wheels that do not hang in their steering, stand elsewhere, or whose steering is not upright or ends too soon."""
+    for (name, wheel), checked in zip(drive.steered.items(), body.steered, strict=True):
+        joint = body.model.joints[name]
+        if checked.joint.child not in body.model.below(joint.child):
+            yield f"{ground.at('drive', 'steered', name)}: the wheel '{wheel}' does not hang in it, so it would not be steered"
+            continue
+        where, axis = _at(body.model, joint.line), rotate(body.poses[joint.child].rotation, joint.axis)
+        if abs(axis[2]) < ALONG:
+            yield f"{where}: '{name}' turns about {_row(axis)} in base_link; a steering turns about z"
+        x, y, _ = body.poses[checked.joint.child].translation.tolist()
+        if abs(abs(x) - drive.wheelbase) > SAME * drive.wheelbase:
+            there = f"the wheel '{wheel}' of the URDF is {abs(x):.4g} m from the axle"
+            yield f"{ground.at('drive', 'wheelbase')}: {drive.wheelbase:g} m, but {there}"
+        tightest = drive.kinematics.curvature(drive.max_steering)
+        most, limits = max(abs(wheel_steering(way * tightest, x, y)) for way in (1.0, -1.0)), joint.limits
+        if limits is not None and most > min(-limits[0], limits[1]) + LEVEL:
+            at = ground.at("drive", "max_steering")
+            yield f"{at}: {drive.max_steering:g} rad turns '{name}' by {most:.4g}, but its limits are {limits[0]:g} and {limits[1]:g} rad"
 
 
 def _omni_faults(body: CheckedBody, drive: OmniFile, ground: FileLocation) -> Iterator[str]:
@@ -191,7 +217,9 @@ def _speed_faults(body: GroundBody, ground: FileLocation) -> Iterator[str]:
     """Limits that the motors do not reach, straight on or on the spot."""
     drive, top = body.drive.kinematics, body.motor.no_load_speed
     ahead = [Twist(1.0, 0.0), *([Twist(0.0, 0.0, 1.0)] if drive.goes_sideways else [])]
-    fastest, turning = (top / max(abs(w) for twist in twists for w in drive.wheels(twist)) for twists in (ahead, [Twist(0.0, 1.0)]))
+    fastest, turning = (
+        top / max(abs(w) for twist in twists for w in drive.wheels(twist)) for twists in (ahead, [Twist(drive.turning_radius, 1.0)])
+    )
     if body.max_linear > fastest:
         yield f"{ground.at('max_linear')}: {body.max_linear:g} m/s, but without load the motors reach {fastest:.3g} m/s"
     if body.max_angular > turning:
@@ -256,7 +284,7 @@ def _castor_notes(body: CheckedBody) -> Iterator[str]:
 
 def _supports(body: CheckedBody) -> list[Floats]:
     """(2,) m: the wheels, wherever they are, and what else touches the floor; of a shape's underside its corners."""
-    points: list[Floats] = [body.poses[wheel.joint.child].translation[:2] for wheel in body.wheels]
+    points: list[Floats] = [body.poses[wheel.joint.child].translation[:2] for wheel in (*body.wheels, *body.steered)]
     for solid in body.collisions(body.rest):
         low = -float(reach(solid, DOWN)[0])
         if low <= TOUCH:

@@ -38,10 +38,13 @@ def load_urdf(path: Path) -> UrdfModel:
     return model
 
 
-def check_urdf(path: Path, wheel_joints: Iterable[str]) -> UrdfModel:
-    """Model of a URDF file without faults in which the wheel joints exist and turn. Raises BadInput for the first fault."""
+def check_urdf(path: Path, wheels: Iterable[str], steering: Iterable[str] = ()) -> UrdfModel:
+    """Model of a URDF file without faults. Raises BadInput for the first fault.
+
+    wheels, steering: names of joints that must be there and turn.
+    """
     model = read_urdf(path)
-    for fault in (*wheel_faults(model, tuple(wheel_joints)), *model_faults(model)):
+    for fault in (*wheel_faults(model, tuple(wheels), tuple(steering)), *model_faults(model)):
         raise BadInput(str(fault))
     return model
 

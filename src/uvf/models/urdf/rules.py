@@ -27,14 +27,16 @@ def model_faults(model: UrdfModel) -> Iterator[ModelFault]:
         )
 
 
-def wheel_faults(model: UrdfModel, wheel_joints: tuple[str, ...]) -> Iterator[ModelFault]:
-    """Faults of the wheel joints that vehicle.yaml names: joints that do not exist or do not turn."""
-    for name in wheel_joints:
-        joint = model.joints.get(name)
+def wheel_faults(model: UrdfModel, wheels: tuple[str, ...], steering: tuple[str, ...] = ()) -> Iterator[ModelFault]:
+    """Faults of the joints of wheels and steering that vehicle.yaml names: joints that do not exist or do not turn."""
+    for name in (*wheels, *steering):
+        joint, steers = model.joints.get(name), name in steering
         if joint is None:
             yield ModelFault(model.path, 0, f"no joint '{name}' (named in vehicle.yaml); {nearest(name, model.joints)}")
-        elif joint.kind != "continuous":
+        elif not steers and joint.kind != "continuous":
             yield ModelFault(model.path, joint.line, f"joint '{name}' is '{joint.kind}', but a wheel needs type=\"continuous\"")
+        elif steers and joint.kind not in ("revolute", "continuous"):
+            yield ModelFault(model.path, joint.line, f"joint '{name}' is '{joint.kind}', but a steering needs type=\"revolute\"")
 
 
 def _inertia_faults(model: UrdfModel, link: Link) -> Iterator[str]:

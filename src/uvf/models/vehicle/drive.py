@@ -1,5 +1,6 @@
 """What moves a ground vehicle: which wheels, where they are, and how it turns by them. One kind of drive is one type."""
 
+from math import atan
 from typing import Annotated
 
 import msgspec
@@ -7,6 +8,7 @@ from msgspec import Meta
 
 from uvf.maths.kinematics import DifferentialDrive, DriveKinematics
 from uvf.maths.wheels.omnidirectional import OmnidirectionalDrive, RollerWheel, mecanum_wheels
+from uvf.maths.wheels.steered import AckermannDrive
 from uvf.models.keys import key, plain
 from uvf.models.quantities import Angle, Positive
 from uvf.models.yaml_data import BadInput, FileLocation
@@ -14,6 +16,7 @@ from uvf.models.yaml_data import BadInput, FileLocation
 KIND, DEFAULT = "kind", "differential"
 Joint = Annotated[str, Meta(min_length=1, max_length=80)]
 Coordinate = Annotated[float, Meta(ge=-1e3, le=1e3)]
+Steering = Annotated[float, Meta(gt=0.01, lt=1.5)]
 
 
 class DriveFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field=KIND):
@@ -47,6 +50,16 @@ class DriveFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_fie
         return None
 
     @property
+    def steered_wheels(self) -> dict[str, str]:
+        """Of wheels that are steered and not driven, the joint that steers -> that on which the wheel turns."""
+        return {}
+
+    @property
+    def all_wheels(self) -> tuple[str, ...]:
+        """Names of the joints on which wheels turn, the driven ones first."""
+        return (*self.joints, *self.steered_wheels.values())
+
+    @property
     def scrubs(self) -> bool:
         """Whether wheels slip across when it turns."""
         return False
@@ -67,8 +80,8 @@ class DriveFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_fie
         raise NotImplementedError
 
 
-class DifferentialDriveFile(DriveFile, frozen=True, tag=DEFAULT):
-    """`kind: differential`, which may be left out: one driven wheel on each side."""
+class OneAxle(DriveFile, frozen=True):
+    """One driven wheel on each side."""
 
     left: Annotated[Joint, plain("Joint of the left wheel in the URDF.")]
     right: Annotated[Joint, plain("Joint of the right wheel in the URDF.")]
@@ -89,10 +102,38 @@ class DifferentialDriveFile(DriveFile, frozen=True, tag=DEFAULT):
         """The track [m]."""
         return self.track
 
+
+class DifferentialDriveFile(OneAxle, frozen=True, tag=DEFAULT):
+    """`kind: differential`, which may be left out: one driven wheel on each side."""
+
     @property
     def kinematics(self) -> DriveKinematics:
         """Of the two wheels."""
         return DifferentialDrive(self.wheel_radius, self.track)
+
+
+class AckermannFile(OneAxle, frozen=True, tag="ackermann"):
+    """`kind: ackermann`: a car or a tricycle. Its driven wheels stay straight; one or more wheels before or behind them are steered."""
+
+    wheelbase: Annotated[
+        Positive, key("m", "Distance from the straight axle to the contact points of the steered wheels; within 3 % of the URDF's.")
+    ]
+    steered: Annotated[
+        dict[Joint, Joint],
+        plain("The steered wheels by their joints in the URDF: the joint that steers, upright, and that on which the wheel turns."),
+    ]
+    max_steering: Annotated[Steering, key("rad", "Largest steering, of a wheel in the middle between the steered ones.")]
+    steering_rate: Annotated[Positive, key("rad/s", "How fast the steering turns.")]
+
+    @property
+    def steered_wheels(self) -> dict[str, str]:
+        """As in the file."""
+        return self.steered
+
+    @property
+    def kinematics(self) -> AckermannDrive:
+        """Of the straight axle and the steering."""
+        return AckermannDrive(self.wheel_radius, self.track, self.wheelbase, self.max_steering)
 
 
 class SeveralWheels(DriveFile, frozen=True):
@@ -213,21 +254,23 @@ class OmniFile(DriveFile, frozen=True, tag="omni"):
         return OmnidirectionalDrive(self.wheel_radius, tuple(RollerWheel(w.x, w.y, w.heading) for w in self.wheels.values()))
 
 
-AnyDrive = DifferentialDriveFile | SkidSteerFile | MecanumFile | OmniFile
+AnyDrive = DifferentialDriveFile | SkidSteerFile | MecanumFile | OmniFile | AckermannFile
 """The first is the one that is meant where no kind is given."""
 
 
 def check_drive(drive: DriveFile, place: FileLocation) -> None:
     """Raises BadInput."""
     seen: set[str] = set()
-    for name in drive.joints:
+    for name in (*drive.all_wheels, *drive.steered_wheels):
         if name in seen:
-            raise BadInput(f"{place}: the joint {name} is named twice; each wheel has a joint of its own")
+            raise BadInput(f"{place}: the joint {name} is named twice; each wheel has joints of its own")
         seen.add(name)
     if isinstance(drive, SeveralWheels):
         _check_sides(drive, place)
     if isinstance(drive, OmniFile):
         _check_omni(drive, place)
+    if isinstance(drive, AckermannFile):
+        _check_car(drive, place)
 
 
 def _check_sides(drive: SeveralWheels, place: FileLocation) -> None:
@@ -244,3 +287,15 @@ def _check_omni(drive: OmniFile, place: FileLocation) -> None:
         raise BadInput(f"{place.at('wheels')}: {len(drive.wheels)} of them; a vehicle that drives sideways and turns needs three")
     if not drive.kinematics.is_complete:
         raise BadInput(f"{place.at('wheels')}: so placed they do not drive it forward, sideways and round, each by itself; check headings")
+
+
+def _check_car(drive: AckermannFile, place: FileLocation) -> None:
+    """The innermost wheel must not stand nearer to the turn's centre than the axle is wide."""
+    if not drive.steered:
+        raise BadInput(f"{place.at('steered')}: no wheel is steered; name the joints of at least one, or write kind: {DEFAULT}")
+    tightest, half = drive.kinematics.turning_radius, drive.track / 2
+    if tightest <= half:
+        raise BadInput(
+            f"{place.at('max_steering')}: {drive.max_steering:g} rad: the centre of the turn would lie {tightest:.3g} m from the middle of "
+            f"the axle, between its wheels; {atan(drive.wheelbase / half):.3g} is too much already"
+        )

@@ -8,10 +8,10 @@ from uvf.runtime.messages.convert import stamp
 SIDES = 2
 
 
-def wheel_command(t: float, speeds: Sequence[float]) -> WheelCommand:
-    """Speeds [rad/s] as a message stamped ``t`` [s]."""
+def wheel_command(t: float, speeds: Sequence[float], steering: float = 0.0) -> WheelCommand:
+    """Speeds [rad/s] and steering [rad] as a message stamped ``t`` [s]."""
     if len(speeds) == SIDES:
-        return WheelCommand(timestamp=stamp(t), left=speeds[0], right=speeds[1])
+        return WheelCommand(timestamp=stamp(t), left=speeds[0], right=speeds[1], steering=steering)
     return WheelCommand(timestamp=stamp(t), each=speeds)
 
 
