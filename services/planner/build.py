@@ -25,6 +25,9 @@ from uvf.planning.local.swept_stop import safe_share
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.sensors.fitted import base_from_sensor, sweeping_of
 
+STEERS = ("mppi", "dwa", "trajectory_rollout")
+"""Local planners that look only at what the vehicle can drive."""
+
 
 def build(site: Scenario) -> list[ServiceInstance]:
     """The planner and tracker of each ground vehicle. Raises BadInput for a vehicle without lidar."""
@@ -42,14 +45,19 @@ def _hosts(member: MissionVehicle) -> list[ServiceInstance]:
     model = load_urdf(member.folder / body.urdf)
     footprint, top = _footprint(model, body), max(highest(model), lidar.mount.xyz[2])
     planner, tracker = member.params("planner", PlannerParams), member.params("tracker", TrackerParams)
-    speed = min(tracker.speed, body.max_linear)
+    speed, tightest = min(tracker.speed, body.max_linear), body.drive.kinematics.turning_radius
+    if tightest and tracker.local_planner not in STEERS:
+        raise BadInput(
+            f"{member.folder / 'vehicle.yaml'}: local planner {tracker.local_planner} turns on the spot, which a car cannot; "
+            f"take {', '.join(STEERS)}"
+        )
 
     def sensors_of() -> ObstacleSensors:
         placer = ScanPlacer(base_from_sensor(lidar.mount), sweeping_of(lidar), FARTHEST)
         return ObstacleSensors(placer, footprint, member.file.sensors, top)
 
     def planner_service() -> PlannerService:
-        vehicle = PlannedVehicle(footprint, sensors_of(), speed, member.entry.job.explore, member.name)
+        vehicle = PlannedVehicle(footprint, sensors_of(), speed, member.entry.job.explore, member.name, tightest)
         return PlannerService(world_from_map, vehicle, planner)
 
     def tracker_service() -> TrackerService:

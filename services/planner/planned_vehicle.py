@@ -8,10 +8,14 @@ from uvf.planning.costmap.footprint import RobotFootprint
 
 @dataclass(frozen=True)
 class PlannedVehicle:
-    """Outline, sensors, speed on straight parts [m/s], and whether it explores."""
+    """Outline, sensors, speed on straight parts [m/s], and whether it explores.
+
+    turning_radius: of its tightest circle [m], 0: it turns on the spot.
+    """
 
     footprint: RobotFootprint
     sensors: ObstacleSensors
     speed: float
     explores: bool
     name: str
+    turning_radius: float = 0.0

@@ -176,7 +176,10 @@ class PlannerService(Service):
     def _patience(self) -> NavigatorSettings:
         progress = ProgressSettings(movement_time_allowance=self.params.patience)
         radius = self._footprint.circumscribed_radius
-        return NavigatorSettings(replan_period=self.params.replan_period, circumscribed_radius=radius, progress=progress)
+        tightest = self._vehicle.turning_radius
+        return NavigatorSettings(
+            replan_period=self.params.replan_period, circumscribed_radius=radius, turning_radius=tightest, progress=progress
+        )
 
     def _fit(self) -> None:
         """Heeds the parameters."""

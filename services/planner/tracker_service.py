@@ -193,9 +193,16 @@ class TrackerService(Service):
 
     def _controller(self) -> LocalController:
         params, body = self.params, self._body
-        speed, turn_rate = self._made_for[1] * min(params.speed, body.max_linear), min(params.turn_speed, body.max_angular)
+        speed, tightest = self._made_for[1] * min(params.speed, body.max_linear), body.drive.kinematics.turning_radius
+        turn_rate = min(params.turn_speed, body.max_angular, *([speed / tightest] if tightest else []))
         limits = Limits(
-            -REVERSE * speed, speed, turn_rate, body.max_linear_acceleration, body.max_angular_acceleration, LATERAL_ACCELERATION
+            -REVERSE * speed,
+            speed,
+            turn_rate,
+            body.max_linear_acceleration,
+            body.max_angular_acceleration,
+            LATERAL_ACCELERATION,
+            turning_radius=tightest,
         )
         settings = ControllerSettings(
             size=SIZE,

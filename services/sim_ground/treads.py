@@ -1,7 +1,7 @@
 """The treads of wheels that scrub, are steered or have rollers, with friction of their own: the engine's is not for them."""
 
 from collections.abc import Sequence
-from math import cos, sin
+from math import cos, expm1, inf, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -30,10 +30,14 @@ class Treads:
     """Of a vehicle's wheels by their joints; axles (n, 3): in the wheels' axes of inertia; on_left: whose grip counts.
 
     grip: (n, 2) friction along and across [-]; along: the direction in which the wheel rolls, or turned from there by ``holds_at`` [rad].
+    contact: length of the tread on the ground [m], which rolling renews; inf: of wheels that scrub anyway.
     """
 
-    def __init__(self, wheels: Sequence[int], axles: Floats, grip: Floats, on_left: Sequence[bool], holds_at: Sequence[float]) -> None:
+    def __init__(
+        self, wheels: Sequence[int], axles: Floats, grip: Floats, on_left: Sequence[bool], holds_at: Sequence[float], contact: float = inf
+    ) -> None:
         self.wheels = tuple(wheels)
+        self._contact = contact
         self._axles, self._grip, self._side = axles, grip, np.array([0 if left else 1 for left in on_left])
         self._turned = np.array([((cos(a), sin(a)), (-sin(a), cos(a))) for a in holds_at])
         self.deflections = np.zeros((len(wheels), 2))
@@ -46,7 +50,7 @@ class Treads:
         """
         touching = {c.link: c for c in sorted(contacts, key=lambda c: c.load) if c.load > 0.0}
         n = len(self.wheels)
-        slips, loads, frames = np.zeros((n, 2)), np.zeros(n), np.zeros((n, 2, 3))
+        slips, loads, frames, renewed = np.zeros((n, 2)), np.zeros(n), np.zeros((n, 2, 3)), np.zeros(n)
         body, turning = np.array(rolling.body.velocity), np.array(rolling.body.angular_velocity)
         for i, (wheel, link, spin) in enumerate(zip(self.wheels, rolling.wheels, rolling.spins, strict=True)):
             if (mark := touching.get(wheel)) is None:
@@ -56,5 +60,6 @@ class Treads:
             carried = body + spin_velocity(turning, place - np.array(rolling.body.position))
             slips[i] = frames[i] @ (carried + spin_velocity(spin * axle, place - link.position))
             loads[i] = mark.load
-        forces = tread_forces(self.deflections, slips, loads, np.array(shares)[self._side, None] * self._grip, dt)
+            renewed[i] = -expm1(-abs(frames[i, 0] @ carried) * dt / self._contact)
+        forces = tread_forces(self.deflections, slips, loads, np.array(shares)[self._side, None] * self._grip, renewed, dt)
         return [(wheel, forces[i] @ frames[i], touching[wheel].place) for i, wheel in enumerate(self.wheels) if wheel in touching]

@@ -6,7 +6,7 @@ are put where they are at each physics step, with the velocity they have, so tha
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import nan
+from math import inf, nan
 from pathlib import Path
 
 import numpy as np
@@ -126,7 +126,7 @@ class BulletWorld:
         mu, mu2 = body.friction.mu, body.friction.mu2 if drive.holds_at is None else FREE
         grip = np.array([(mu, mu2)] * len(driven) + [(FREE, mu2)] * len(steered))
         on_left = drive.on_left + tuple(link.position[1] > 0.0 for link in self.engine.link_poses(index, steered))
-        return Treads(wheels, axles, grip, on_left, drive.holds_at or (0.0,) * len(wheels))
+        return Treads(wheels, axles, grip, on_left, drive.holds_at or (0.0,) * len(wheels), drive.wheel_radius if steered else inf)
 
     def _place(self, index: int, vehicle: BodyPlacement, com_in_base: tuple[Floats, Floats]) -> None:
         x, y, yaw = vehicle.start

@@ -74,7 +74,7 @@ def drive(world: World, seed: int) -> list[Moment]:
     pose, before, moments = IDENTITY, Twist(0.0, 0.0), []
     radii = np.array((world.left, world.right)) * (1.0 + world.radius * rng.standard_normal(2))
     track, bias, offset = TRACK * world.track, world.bias * rng.standard_normal(), world.accel_offset * rng.standard_normal()
-    rolled, counted = np.zeros(2), np.zeros(2)
+    rolled, counted, felt = np.zeros(2), np.zeros(2), 0.0
     for k, after in enumerate(wanted(world.seconds, rng), 1):
         mean = Twist((before.linear + after.linear) / 2, (before.angular + after.angular) / 2)
         pose = move(pose, mean, DT)
@@ -89,7 +89,10 @@ def drive(world: World, seed: int) -> list[Moment]:
         turning = world.gyro_turn * np.sqrt(abs(mean.angular) * DT) + world.gyro * np.sqrt(DT)
         rate = mean.angular + bias + turning / DT * rng.standard_normal()
         force = (after.linear - before.linear) / DT + offset + world.accel / np.sqrt(DT) * rng.standard_normal()
-        step = Step(DT, WheelTravel(left, right), float(rate), float(force)) if world.has_imu else Step(DT, WheelTravel(left, right))
+        step = Step(DT, WheelTravel(left, right))
+        if world.has_imu:
+            step = step._replace(rate=float(rate), force=float(force), jolt=float(force - felt))
+            felt = force
         moments.append(Moment(k * DT, step, pose, after))
         before = after
     return moments

@@ -24,7 +24,7 @@ from uvf.estimation.kalman import Kind
 from uvf.estimation.odometry.calibration import Scales, SegmentMaker, WheelCalibration
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.states import Noise, Step
-from uvf.maths.kinematics import Twist, move
+from uvf.maths.kinematics import Twist, WheelTravel, move
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2
 
@@ -97,7 +97,7 @@ def begun(kind: Kind, scales: Scales) -> DriveFilter:
 
 
 def _scaled(step: Step, scales: Scales) -> Step:
-    return step._replace(left=step.left * scales.left, right=step.right * scales.right)
+    return step._replace(travel=WheelTravel(step.left * scales.left, step.right * scales.right, step.travel.aside))
 
 
 def off(odometer: Odometer, true: Pose2) -> Floats:

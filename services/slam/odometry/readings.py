@@ -30,7 +30,7 @@ class Readings:
         self._body_from_imu: Floats = matrix(from_euler(*mount.rpy))
         self._arm = mount.xyz
         self._waiting: list[Imu] = []
-        self._turning = 0.0
+        self._turning = self._force = 0.0
         self._inclination = Inclination()
         self.last: WheelTicks | None = None
 
@@ -75,7 +75,9 @@ class Readings:
         on_axle = self._body_from_imu @ force + (turning**2 * x + angular * y, turning**2 * y - angular * x, 0.0)
         tilting = self._inclination.step(dt, rate, on_axle, ways)
         ways, turning = self._inclination.seen_from_above(ways, rate)
-        return Step(dt, ways, turning, float(on_axle[0]) + turning * ways.aside / dt, *tilting)
+        ahead = float(on_axle[0]) + turning * ways.aside / dt
+        jolt, self._force = ahead - self._force, ahead
+        return Step(dt, ways, turning, ahead, *tilting, jolt)
 
     def _until(self, now: float) -> tuple[Floats, Floats]:
         """(n, 3) rates and forces of the samples of the interval that the wheels tell of."""

@@ -41,7 +41,8 @@ REST_SPEED = 0.005  # m/s, 1 sigma
 REST_GATE = 16.0
 WHEEL_PERIOD = 0.02  # s, over which the turn rate that is told is a mean
 SEEN_SPEED = 0.1  # m/s, 1 sigma of a speed by scans
-SLIPPING = 0.01  # m/s per square root of s: what is added to the speed's noise while a wheel is not believed
+SLIPPING = 0.03  # m/s per square root of s: what is added to the speed's noise while a wheel is not believed
+JOLTED = 0.3  # m/s^2 of jolt, from which on tyres give and swing so much that the wheels tell nothing about their radii
 UNSEEN = 50.0  # steps in which a way that the scans do not see may be all wrong
 NOTHING = slice(0, 0)
 
@@ -205,7 +206,8 @@ class DriveFilter:
         ):
             speed = way / step.dt
             expected = float(self.kalman.x[SPEED]) + side * turn / step.dt  # what was told, with its noise, would bias the scale
-            parts = {SPEED: 1.0, GYRO_BIAS: -side, wheel: -expected} | self._half_step(step)
+            radius = -expected if abs(step.jolt) < JOLTED else 0.0
+            parts = {SPEED: 1.0, GYRO_BIAS: -side, wheel: radius} | self._half_step(step)
             half = 0.5 * step.dt * (step.force or 0.0)
             measured = _linear(speed + half - side * step.rate, len(self.kalman.x), parts, variance / step.dt**2)
             innovation, s = self._innovation(measured)

@@ -93,7 +93,7 @@ def wheel_variance(x: Floats, step: Step, noise: Noise, turn: float, track: floa
 
     By the distances that the state expects: by those that were told, the ones that noise has made short would count more.
     """
-    skidding = (noise.skid * turn * track / 2) ** 2 + noise.resolution**2 / 6
+    skidding = (noise.skid * turn * track / 2) ** 2 + noise.resolution**2 / 6 + (noise.give * step.jolt) ** 2
     way, side = float(x[SPEED]) * step.dt, turn * track / 2
     return noise.distance**2 * abs(way - side) + skidding, noise.distance**2 * abs(way + side) + skidding
 

@@ -25,6 +25,7 @@ class Step(NamedTuple):
     force: float | None = None  # m/s^2, mean of the accelerometer's forward axis at the middle of the axle
     tilting: float = 0.0  # m/s^3, by which gravity's part of that force changes as the vehicle pitches, and turns on a slope
     tilting_noise: float = 0.0  # m/s^2 per square root of s, 1 sigma of it
+    jolt: float = 0.0  # m/s^2, by which the force differs from that of the step before
 
     @property
     def left(self) -> float:
@@ -43,6 +44,7 @@ class Noise:
 
     distance: float = 0.005  # m per square root of m that a wheel rolls
     resolution: float = 1e-4  # m, way of a wheel from one tick to the next
+    give: float = 5e-4  # m per m/s^2 of jolt, by which tyres give and swing
     skid: float = 0.05  # part of a turn by which the wheels may tell it wrong
     turn: float = 0.003  # rad per square root of rad turned, of the gyroscope
     gyro: float = 3e-4  # rad per square root of s

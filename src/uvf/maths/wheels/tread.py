@@ -21,15 +21,17 @@ MOST = 0.4
 
 
 @compiled
-def tread_forces(deflections: Floats, slips: Floats, loads: Floats, grip: Floats, dt: float) -> Floats:
+def tread_forces(deflections: Floats, slips: Floats, loads: Floats, grip: Floats, renewed: Floats, dt: float) -> Floats:
     """Forces (n, 2) [N] of the ground on n treads, along and across each, after a step of ``dt`` [s].
 
     deflections: (n, 2) [m], of the treads until then, which are set anew; slips: (n, 2) [m/s], velocity of the treads against the
-    ground; loads: (n,) [N]; grip: (n, 2) [-], friction coefficients along and across, 0 where the tread rolls freely.
+    ground; loads: (n,) [N]; grip: (n, 2) [-], friction coefficients along and across, 0 where the tread rolls freely; renewed: (n,) [-],
+    share of the tread on the ground that rolling has renewed in the step: it takes no deflection across over.
     """
     forces = np.zeros_like(slips)
     rate = min(STIFFNESS, MOST / dt)
     for i in range(len(loads)):
+        deflections[i, 1] *= 1.0 - renewed[i]
         mass, used = loads[i] / GRAVITY, 0.0
         for k in range(2):
             limit = grip[i, k] * loads[i]

@@ -21,7 +21,7 @@ POOL = 4
 AT_ONCE = 0.95
 """Share of the horizon after a contact from which no future is worth driving."""
 TURN_FIRST = (0.5, 1.0, 1.6, 2.2, 2.7, 3.2)
-"""rad by which manoeuvres turn on the spot before they drive on."""
+"""rad by which manoeuvres turn, on the spot or backing up, before they drive on."""
 SMOOTH = np.array((-3.0, 12.0, 17.0, 12.0, -3.0)) / 35.0
 """Savitzky-Golay of five points, quadratic."""
 
@@ -115,24 +115,28 @@ def _weights(s: MppiSettings, limits: Limits) -> Floats32:
     weights[rollout.OFF_PATH], weights[rollout.REVERSED] = s.off_path_weight / way, s.reverse_weight / way
     weights[rollout.FAST], weights[rollout.CLOSE] = s.fast_weight, s.close_weight
     weights[rollout.TURNED] = s.turn_weight / limits.max_turn_rate
-    weights[rollout.ASIDE] = s.aside_weight / way * limits.max_speed / limits.max_turn_rate
+    weights[rollout.ASIDE] = s.aside_weight / way * max(limits.max_speed / limits.max_turn_rate, limits.turning_radius)
     return weights
 
 
 @lru_cache(maxsize=4)
 def _manoeuvres(limits: Limits, settings: MppiSettings) -> Floats32:
-    """(k, steps, 2) commands that find a way where noise round the last plan does not: held steady, or turning first and then driving."""
+    """(k, steps, 2) commands that find a way where noise round the last plan does not: held steady, or turning first and then driving.
+
+    Who cannot turn on the spot backs up round a corner first.
+    """
     speeds = np.linspace(limits.min_speed, limits.max_speed, 9)
     turns = np.linspace(-limits.max_turn_rate, limits.max_turn_rate, 13)
     pairs = np.stack(np.meshgrid(speeds, turns, indexing="ij"), axis=-1).reshape(-1, 1, 2)
     steady = np.repeat(pairs, settings.steps, axis=1)
-    turning = []
+    turning, backing = [], min(limits.min_speed, 0.0) if limits.turning_radius > 0.0 else 0.0
+    rate = min(limits.max_turn_rate, -backing / limits.turning_radius) if backing else limits.max_turn_rate
     for angle in TURN_FIRST:
-        first = min(ceil(angle / limits.max_turn_rate / settings.step), settings.steps)
+        first = min(ceil(angle / rate / settings.step), settings.steps)
         for speed in (0.4 * limits.max_speed, 0.8 * limits.max_speed):
-            for rate in (-limits.max_turn_rate, limits.max_turn_rate):
+            for way in (-limits.max_turn_rate, limits.max_turn_rate):
                 commands = np.tile((speed, 0.0), (settings.steps, 1))
-                commands[:first] = 0.0, rate
+                commands[:first] = backing, way
                 turning.append(commands)
     both: Floats32 = np.concatenate((np.array(turning), steady)).astype(np.float32)[: settings.samples // 2]
     return both

@@ -6,6 +6,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.maths.compiled import compiled
 from uvf.planning.local.window import Grids
 
 Floats = NDArray[np.float64]
@@ -15,7 +16,7 @@ STOP = (0.0, 0.0)
 
 
 class Limits(NamedTuple):
-    """What a differential drive can do."""
+    """What a differential drive or a car can do."""
 
     min_speed: float  # m/s, below 0 where it may reverse
     max_speed: float  # m/s
@@ -24,6 +25,7 @@ class Limits(NamedTuple):
     angular_acceleration: float  # rad/s^2
     lateral_acceleration: float  # m/s^2, of speed times turn rate, beyond which the wheels slide or the vehicle tips
     sideslip: float = 0.0  # s, of speed times turn rate: velocity at which wheels that skid in a turn slide out of it
+    turning_radius: float = 0.0  # m, of the tightest circle; 0: it turns on the spot
 
 
 class State(NamedTuple):
@@ -62,11 +64,18 @@ class LocalPlanner(Protocol):
         ...
 
 
+@compiled
+def fastest_turn(limits: Limits, speed: float) -> float:
+    """Largest turn rate [rad/s] at a speed [m/s]."""
+    most = min(limits.max_turn_rate, limits.lateral_acceleration / max(abs(speed), 1e-3))
+    return min(most, abs(speed) / limits.turning_radius) if limits.turning_radius > 0.0 else most
+
+
 def within(limits: Limits, now: State, wanted: tuple[float, float], dt: float) -> tuple[float, float]:
     """The wanted velocity (m/s, rad/s) as far as it can be reached within ``dt`` [s], and driven without sliding."""
     dv, dw = limits.acceleration * dt, limits.angular_acceleration * dt
     slowest = min(limits.min_speed, 0.0)  # who may not drive slowly may still stop
     speed = min(max(wanted[0], now.speed - dv, slowest), now.speed + dv, limits.max_speed)
-    most = min(limits.max_turn_rate, limits.lateral_acceleration / max(abs(speed), 1e-3))
+    most = fastest_turn(limits, speed)
     turn = min(max(wanted[1], now.turn_rate - dw), now.turn_rate + dw)
     return speed, min(max(turn, -most), most)

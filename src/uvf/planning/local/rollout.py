@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
 from uvf.planning.costmap.headings import HEADINGS, STEP
-from uvf.planning.local.planner import Limits, State
+from uvf.planning.local.planner import Limits, State, fastest_turn
 from uvf.planning.local.window import Bits, Grids
 
 Floats = NDArray[np.float64]
@@ -109,9 +109,11 @@ def _driven(motion: Motion, command: Floats32, dt: float, limits: Limits) -> Mot
     x, y, yaw, speed, turn, cosine, sine = motion
     wanted = min(max(float(command[0]), limits.min_speed), limits.max_speed)
     speed += min(max(wanted - speed, -limits.acceleration * dt), limits.acceleration * dt)
-    most = min(limits.max_turn_rate, limits.lateral_acceleration / max(abs(speed), 1e-3))
+    most = fastest_turn(limits, speed)
     wanted = min(max(float(command[1]), -most), most)
     turn += min(max(wanted - turn, -limits.angular_acceleration * dt), limits.angular_acceleration * dt)
+    if limits.turning_radius > 0.0:
+        turn = min(max(turn, -most), most)
     half = 0.5 * turn * dt
     cosine, sine = _turned(cosine, sine, half)
     ahead, aside = speed * dt, -limits.sideslip * speed * turn * dt

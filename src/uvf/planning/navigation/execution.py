@@ -29,10 +29,14 @@ class Executor:
         self._stood_since: float | None = None
         self._retreat: Retreat | None = None
 
+    @property
+    def _turns_on_the_spot(self) -> bool:
+        return self.controller.limits.turning_radius == 0.0
+
     def draw_back(self, t: float, pose: Pose2, bump: Bump) -> None:
         """Draws back from a touch at ``t`` [s], whatever it was doing, and goes on with that."""
         if self._retreat is None:
-            self._retreat = Retreat(t, pose, bump)
+            self._retreat = Retreat(t, pose, bump, self._turns_on_the_spot)
 
     def step(self, t: float, pose: Pose2, velocity: tuple[float, float], directive: Directive) -> tuple[float, float]:
         """Velocity (m/s, rad/s) at ``t`` [s]; the stop before obstacles has the last word in all that is done."""
@@ -76,7 +80,8 @@ class Executor:
             wanted = (0.0, SPIN_RATE if directive.amount > 0 else -SPIN_RATE)
         else:
             backed = hypot(pose[0] - self._begun[0], pose[1] - self._begun[1])
-            done = backed >= directive.amount and (self.controller.has_room_to_turn(pose) or backed >= MOST_BACKED * directive.amount)
+            has_room = not self._turns_on_the_spot or self.controller.has_room_to_turn(pose)
+            done = backed >= directive.amount and (has_room or backed >= MOST_BACKED * directive.amount)
             wanted = (-BACK_UP_SPEED, 0.0)
         if done:
             self.report = Report(directive.number, done=True)

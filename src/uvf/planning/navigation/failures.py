@@ -41,14 +41,17 @@ class Attempt:
     amount: float
 
 
-def recoveries(failure: Failure, circumscribed_radius: float) -> tuple[Attempt, ...]:
+def recoveries(failure: Failure, circumscribed_radius: float, turning_radius: float = 0.0) -> tuple[Attempt, ...]:
     """What to try against a failure, in this order, before the goal is given up; ``circumscribed_radius`` [m] of the footprint.
+
+    turning_radius [m]: of the tightest circle; who cannot turn on the spot backs up instead.
 
     The order is move_base's: conservative reset, clearing rotation, aggressive reset, clearing rotation; then backing up and waiting. What
     cannot help is left out: no rotation against a goal in an obstacle, no reset where something moves in the way.
     """
     conservative, aggressive = Attempt(Recovery.CONSERVATIVE_RESET, 3.0), Attempt(Recovery.AGGRESSIVE_RESET, 4.0 * circumscribed_radius)
-    rotation, back_up = Attempt(Recovery.CLEARING_ROTATION, 6.28), Attempt(Recovery.BACK_UP, 0.3)
+    back_up = Attempt(Recovery.BACK_UP, max(0.3, turning_radius))
+    rotation = Attempt(Recovery.CLEARING_ROTATION, 6.28) if turning_radius == 0.0 else back_up
     wait, long_wait = Attempt(Recovery.WAIT, 4.0), Attempt(Recovery.WAIT, 8.0)
     by_failure = {
         Failure.START_OCCUPIED: (aggressive, back_up, rotation),

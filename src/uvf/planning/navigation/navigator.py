@@ -86,6 +86,7 @@ class NavigatorSettings:
     passed: float = 0.35  # m from a place on the way that counts as passed
     recovered: float = 1.0  # m of the way by which it must have become shorter for recoveries to begin from the first again
     circumscribed_radius: float = 0.3  # m, of the footprint
+    turning_radius: float = 0.0  # m, of the tightest circle; 0: it turns on the spot
     progress: ProgressSettings = field(default_factory=ProgressSettings)
 
 
@@ -133,7 +134,7 @@ class Navigator:
         """Takes a goal at ``t`` [s]; the one before is preempted."""
         if not (np.isfinite((goal.x, goal.y, *chain.from_iterable(goal.via))).all() and (goal.yaw is None or np.isfinite(goal.yaw))):
             raise ValueError(f"goal: ({goal.x}, {goal.y}, {goal.yaw}); its coordinates must be finite [m, m, rad]")
-        self._goal, self._status = goal, Status.FOLLOWING
+        self._goal, self._status = self._within_reach(goal), Status.FOLLOWING
         self._failure, self._reason = Failure.NONE, ""
         self._tried, self._count, self._until = 0, 0, -inf
         self._begun_with, self._begun_at = inf, None
@@ -144,8 +145,12 @@ class Navigator:
 
     def lead_on(self, t: float, goal: NavigationGoal) -> None:
         """The goal that is being driven to has moved at ``t`` [s]: recoveries go on where they are."""
-        self._goal, self._planned_at = goal, -inf
+        self._goal, self._planned_at = self._within_reach(goal), -inf
         self._progress.new_way(t)
+
+    def _within_reach(self, goal: NavigationGoal) -> NavigationGoal:
+        """Who cannot turn on the spot comes to the place, heading anywhere."""
+        return goal if self.settings.turning_radius == 0.0 else replace(goal, yaw=None)
 
     def cancel(self, t: float) -> None:
         """Gives the goal up because somebody asked for it; the vehicle stops."""
@@ -228,7 +233,7 @@ class Navigator:
     def _fail(self, t: float, pose: Pose2, failure: Failure, reason: str) -> None:
         """Something is in the way: the next recovery against it, or none is left."""
         self._failure, self._reason = failure, reason
-        attempts = recoveries(failure, self.settings.circumscribed_radius)
+        attempts = recoveries(failure, self.settings.circumscribed_radius, self.settings.turning_radius)
         if self._tried >= len(attempts) or (self._goal is not None and self._count >= self._goal.most_recoveries):
             self._end(t, Status.ABORTED, failure, reason)
             return

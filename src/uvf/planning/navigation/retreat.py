@@ -14,11 +14,11 @@ LONGEST = 3.0  # s
 class Retreat:
     """From one bump. What was touched is not remembered before it is over: the vehicle stands against it, and could not move."""
 
-    def __init__(self, t: float, pose: Pose2, bump: Bump) -> None:
+    def __init__(self, t: float, pose: Pose2, bump: Bump, turns_on_the_spot: bool = True) -> None:
         self.bump = bump
         self._until, self._from = t + LONGEST, pose
         speed, turn_rate = bump.motion
-        self._turns = abs(turn_rate) * FAR_ENOUGH > abs(speed) * TURNED_ENOUGH
+        self._turns = turns_on_the_spot and abs(turn_rate) * FAR_ENOUGH > abs(speed) * TURNED_ENOUGH
         self._way = -copysign(1.0, turn_rate if self._turns else float(bump.points[:, 0].mean()))
 
     def wanted(self) -> tuple[float, float]:
