@@ -4,6 +4,7 @@ import shutil
 import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
+from math import floor, tan
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from uvf.models.importing.rebuilt import rebuilt, wheel_names
 from uvf.models.importing.robot import Foreign, StatedLimits
 from uvf.models.importing.sdf.robot import read_foreign_sdf
 from uvf.models.importing.sensors import sensors_section
+from uvf.models.importing.steered_wheels import middle_steering
 from uvf.models.importing.urdf import read_foreign_urdf
 from uvf.models.importing.wheel_guess import WheelGuess
 from uvf.models.shapes.mesh import placed, reach
@@ -33,6 +35,8 @@ from uvf.models.yaml_data import BadInput
 NOTES = "import.txt"
 SPEED, ACCELERATION = 0.5, 0.5  # m/s and m/s^2, where nothing is stated
 TRACTION = 2.5  # m/s^2
+STEERING_RATE = 2.0  # rad/s
+CAR_HZ = 400.0  # Hz of physics: with 200 the light wheels of cars hop when they brake in a curve
 MARGIN = 3.0  # of a motor's speed without load over the largest that is asked for
 ROUND = np.column_stack([f(np.linspace(0, 2 * np.pi, 180, endpoint=False)) for f in (np.cos, np.sin, np.zeros_like)])
 
@@ -79,7 +83,7 @@ def _write(folder: Path, source: Path, foreign: Foreign, made: tuple[DriveWheels
         "ground": _ground(folder.name, wheels, model, _limits(source, foreign)),
         "sensors": sensors_section(foreign, base_from_link),
     }
-    foreign.notes.add("guessed: motors; set them in vehicle.yaml")
+    foreign.notes.add(f"guessed: motors{' and the rate of the steering' if wheels.steered else ''}; set them in vehicle.yaml")
     used = {s.mesh for link in model.links.values() for s in (*link.visuals, *link.collisions) if s.mesh is not None}
     for mesh in (folder / "meshes").glob("*"):
         if mesh not in used:
@@ -125,12 +129,15 @@ def _ground(name: str, wheels: DriveWheels, model: UrdfModel, limits: StatedLimi
     acceleration = limits.linear_acceleration or ACCELERATION
     spin = min(4.0, 4 * acceleration / wheels.turning_track)
     mass = sum(link.inertial.mass for link in model.links.values() if link.inertial is not None)
+    turning = limits.angular or float(f"{min(2.0, 2 * fastest / wheels.turning_track):.3g}")
+    if wheels.steered is not None:
+        turning = float(f"{fastest * tan(max_steering(wheels, model)) / wheels.wheelbase:.3g}")
     return {
         "urdf": f"{name}.urdf",
-        "drive": _drive(wheels),
+        "drive": _drive(wheels, model),
         "radius": round(outline + 0.002, 4),
         "max_linear": fastest,
-        "max_angular": limits.angular or float(f"{min(2.0, 2 * fastest / wheels.turning_track):.3g}"),
+        "max_angular": turning,
         "max_linear_acceleration": acceleration,
         "max_angular_acceleration": float(f"{min(limits.angular_acceleration or spin, 2 * TRACTION / wheels.turning_track):.3g}"),
         "motor": {
@@ -138,14 +145,33 @@ def _ground(name: str, wheels: DriveWheels, model: UrdfModel, limits: StatedLimi
             "no_load_speed": float(f"{MARGIN * _fastest_wheel(fastest, limits, wheels) / wheels.radius:.3g}"),
             "lag": 0.03,
         },
+        **({"physics_hz": CAR_HZ} if wheels.steered is not None else {}),
     }
 
 
-def _drive(wheels: DriveWheels) -> dict[str, Any]:
+def max_steering(wheels: DriveWheels, model: UrdfModel) -> float:
+    """Largest steering of a car [rad], of a wheel in the middle between the steered ones."""
+    limits = model.joints["steering_left_joint"].limits
+    assert limits is not None
+    return middle_steering(limits[1], wheels.wheelbase, wheels.steered_track)
+
+
+def _drive(wheels: DriveWheels, model: UrdfModel) -> dict[str, Any]:
     joints = {side: [f"{name}_joint" for name in wheel_names(side, len(wheels.left))] for side in ("left", "right")}
     sizes = {"wheel_radius": round(wheels.radius, 6), "track": round(wheels.track, 6)}
     if wheels.kind == "differential":
         return {side: names[0] for side, names in joints.items()} | sizes
+    if wheels.kind == "ackermann":
+        steered = {f"steering_{side}_joint": f"steered_{side}_joint" for side in ("left", "right")}
+        return {
+            "kind": "ackermann",
+            **{side: names[0] for side, names in joints.items()},
+            **sizes,
+            "wheelbase": round(wheels.wheelbase, 6),
+            "steered": steered,
+            "max_steering": floor(100 * max_steering(wheels, model)) / 100,
+            "steering_rate": STEERING_RATE,
+        }
     if wheels.kind == "mecanum":
         return {"kind": "mecanum", **joints, **sizes, "wheelbase": round(wheels.wheelbase, 6)}
     return {"kind": "skid_steer", **joints, **sizes, "effective_track": round(wheels.turning_track, 4)}

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
@@ -13,7 +13,8 @@ from uvf.maths.rotations import from_matrix
 from uvf.maths.se3 import Transform, apply, inverse
 from uvf.maths.wheels.scrubbing import Scrubbing, scrubbing, shared_loads
 from uvf.models.importing.robot import Foreign
-from uvf.models.importing.wheel_guess import WheelGuess, may_turn, shapes_below, wheel_on
+from uvf.models.importing.steered_wheels import car_of
+from uvf.models.importing.wheel_guess import CASTORS, Pair, WheelGuess, may_turn, shapes_below, wheel_on
 from uvf.models.shapes.mesh import reach
 from uvf.models.urdf.inertia import whole
 from uvf.models.urdf.robot import Joint, UrdfModel
@@ -24,7 +25,6 @@ Floats = NDArray[np.float64]
 PARALLEL = 0.97
 ALIKE = 0.12  # share by which the radii of a pair may differ, and the tracks of pairs that drive together
 MECANUM = re.compile(r"mecan", re.I)
-CASTORS = ("cast", "swivel", "ball", "skid", "support")
 PASSIVE = re.compile(r"cast[eo]r|swivel|passive|idler|fork|steer|pivot|omni|follow", re.I)
 DRIVEN = re.compile(r"wheel|whl|tire|tyre|ruota|rueda|roue|rad\b|drive|motor|trac", re.I)
 LEFT = re.compile(
@@ -37,15 +37,12 @@ RIGHT = re.compile(
 )
 
 
-Pair = tuple[WheelGuess, WheelGuess]
-
-
 @dataclass(frozen=True)
 class DriveWheels:
     """The driven wheels, left and right as the vehicle drives, from the front, and the other wheels.
 
     base_from_root: to the floor under the point about which the vehicle turns, x forward, z up; turning_track: track of the two wheels
-    on the axle through it that turn as all of them do [m]; kind: of drive, as in vehicle.yaml.
+    on the axle through it that turn as all of them do [m]; kind: of drive, as in vehicle.yaml; steered: of a car.
     """
 
     left: tuple[WheelGuess, ...]
@@ -54,13 +51,21 @@ class DriveWheels:
     base_from_root: Transform
     turning_track: float
     kind: str = "differential"
+    steered: Pair | None = None
 
     @property
     def wheelbase(self) -> float:
-        """Distance between the foremost and the rearmost wheels' axles [m]."""
+        """Distance between the foremost and the rearmost driven wheels' axles, or of a car between both axles [m]."""
+        if self.steered is not None:
+            return float(abs(apply(self.base_from_root, np.array([wheel.centre for wheel in self.steered]))[:, 0].mean()))
         ends = np.array([wheel.centre for side in (self.left, self.right) for wheel in (side[0], side[-1])])
         ahead = apply(self.base_from_root, ends)[:, 0]
         return float(ahead[::2].mean() - ahead[1::2].mean())
+
+    @property
+    def steered_track(self) -> float:
+        """Of a car: distance between the steered wheels [m]."""
+        return _track(self.steered[:1], self.steered[1:]) if self.steered is not None else 0.0
 
     @property
     def driven(self) -> tuple[WheelGuess, ...]:
@@ -96,9 +101,19 @@ def find_wheels(foreign: Foreign) -> DriveWheels:
             f"{model.path}: no two wheels of one size on one axis; joints that turn: {found}{held}. "
             "UVF drives two wheels on one axle: make their joints continuous, give both a shape, name them ..._left... and ..._right..."
         )
+    if (car := car_of(foreign, pairs)) is not None:
+        straight, steered = car
+        return with_steering(_oriented([straight], wheels, foreign), steered)
     middle = np.mean([p.translation for p in model.link_poses().values()], axis=0)
     best = max(pairs, key=lambda pair: _score(pair, foreign, middle))
     return _oriented([best, *_more_pairs(best, pairs, foreign)], wheels, foreign)
+
+
+def with_steering(wheels: DriveWheels, steered: Pair) -> DriveWheels:
+    """The same as a car's, whose other wheels are steered."""
+    left, right = sorted(steered, key=lambda wheel: -float(apply(wheels.base_from_root, wheel.centre[None])[0, 1]))
+    others = tuple(wheel for wheel in wheels.others if wheel not in steered)
+    return replace(wheels, others=others, kind="ackermann", steered=(left, right))
 
 
 def _has_rollers(foreign: Foreign, wheels: Iterable[WheelGuess]) -> bool:

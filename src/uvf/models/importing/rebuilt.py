@@ -5,11 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.maths.rotations import rotate
 from uvf.maths.se3 import IDENTITY, Transform, apply, compose, inverse
-from uvf.models.importing.drive_wheels import CASTORS, DriveWheels, swivels
+from uvf.models.importing.drive_wheels import DriveWheels, swivels
 from uvf.models.importing.inertia_guess import mended
 from uvf.models.importing.robot import Foreign
-from uvf.models.importing.wheel_guess import WheelGuess, shapes_below
+from uvf.models.importing.steered_wheels import steered_most, steering_of
+from uvf.models.importing.wheel_guess import CASTORS, WheelGuess, shapes_below
 from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.inertia import joined, moved
@@ -20,7 +22,8 @@ Floats = NDArray[np.float64]
 
 BASE = "base_link"
 DOWN = np.array(((0.0, 0.0, -1.0),))
-Y = np.array((0.0, 1.0, 0.0))
+Y, Z = np.array((0.0, 1.0, 0.0)), np.array((0.0, 0.0, 1.0))
+LIGHT = 0.01  # kg, of a steering that weighs nothing in the file
 SLIDE = "wheels that neither drive nor swivel became balls that slide"
 LOW = 0.004  # m above the floor, within which a shape is meant to touch it
 LIFT = 0.0005  # m
@@ -43,8 +46,9 @@ def rebuilt(foreign: Foreign, wheels: DriveWheels) -> UrdfModel:
     model = foreign.model
     poses = {name: compose(wheels.base_from_root, pose) for name, pose in model.link_poses().items()}
     parts = _Parts(model, wheels, poses, {}, {})
-    below = {w.joint.name: [n for n in model.below(w.joint.child) if n in poses] for w in wheels.driven}
-    turning = {name for names in below.values() for name in names}
+    below = {w.joint.name: [n for n in model.below(w.joint.child) if n in poses] for w in (*wheels.driven, *(wheels.steered or ()))}
+    knuckles = {w.joint.name: _knuckle(foreign, w, below[w.joint.name], poses) for w in wheels.steered or ()}
+    turning = {name for names in (*below.values(), *knuckles.values()) for name in names}
     rest = [name for name in poses if name not in turning]
     castors = _castors(parts, rest, foreign)
     trunk = _trunk(parts, rest)
@@ -55,6 +59,12 @@ def rebuilt(foreign: Foreign, wheels: DriveWheels) -> UrdfModel:
     for side, several in (("left", wheels.left), ("right", wheels.right)):
         for name, wheel in zip(wheel_names(side, len(several)), several, strict=True):
             _add_wheel(parts, name, wheel, below[wheel.joint.name])
+    if wheels.steered is not None:
+        most = steered_most(foreign, wheels.steered)
+        for side, wheel in zip(("left", "right"), wheels.steered, strict=True):
+            lowered = _on_floor(wheel, wheels, foreign)
+            _add_knuckle(parts, f"steering_{side}", lowered, (knuckles[wheel.joint.name], most))
+            _add_wheel(parts, f"steered_{side}", lowered, below[wheel.joint.name], f"steering_{side}_link")
     foreign.notes.add("wheels touch as balls of their radius: one contact at the middle of the tread")
     held = [j.name for j in model.joints.values() if j.kind != "fixed" and j.child in rest and j.child not in castors]
     if held:
@@ -135,19 +145,53 @@ def wheel_names(side: str, count: int) -> list[str]:
     return [f"wheel_{side}"] if count == 1 else [f"wheel_{side}_{i}" for i in range(1, count + 1)]
 
 
-def _add_wheel(parts: _Parts, called: str, wheel: WheelGuess, names: list[str]) -> None:
-    """A link at the middle of the tread, its axes those of base_link, on a joint about y."""
+def _on_floor(wheel: WheelGuess, wheels: DriveWheels, foreign: Foreign) -> WheelGuess:
+    """The same wheel where it touches the floor on which the others stand; what hangs elsewhere stays there, for the check to tell of."""
+    gap = float(apply(wheels.base_from_root, wheel.centre[None])[0, 2]) - wheel.radius
+    if abs(gap) > NEAR_FLOOR * wheel.radius:
+        return wheel
+    if abs(gap) > LIFT:
+        foreign.notes.add("steered wheels put on the floor", f"{wheel.joint.name} by {-gap * 1000:.1f} mm")
+    up = inverse(wheels.base_from_root).rotation
+    return replace(wheel, centre=wheel.centre - gap * rotate(up, Z))
+
+
+def _knuckle(foreign: Foreign, wheel: WheelGuess, turning: list[str], poses: dict[str, Transform]) -> list[str]:
+    """The links that a steering turns, beside the wheel's own."""
+    joint = steering_of(foreign.model, wheel)
+    assert joint is not None
+    return [n for n in foreign.model.below(joint.child) if n in poses and n not in turning]
+
+
+def _add_wheel(parts: _Parts, called: str, wheel: WheelGuess, names: list[str], parent: str = BASE) -> None:
+    """A link at the middle of the tread, its axes those of base_link, on a joint about y; ``parent`` stands there, too, or is the base."""
     centre = apply(parts.wheels.base_from_root, wheel.centre[None])[0]
-    wheel_from_base = Transform(IDENTITY.rotation, -centre)
-    links = [parts.model.links[n] for n in names]
-    frames = {n: compose(wheel_from_base, parts.poses[n]) for n in names}
-    masses = [moved(link.inertial, frames[link.name]) for link in links if link.inertial is not None]
-    looks = [placed(s, frames[k.name]) for k in links for s in (k.visuals or k.collisions)]
     name = f"{called}_link"
     ball = Solid(name, "sphere", (wheel.radius,), np.zeros(3))
-    parts.links[name] = Link(name, joined(masses), tuple(replace(s, name=name) for s in looks), (ball,))
+    masses, looks = _joined_at(parts, centre, names, name)
+    parts.links[name] = Link(name, masses, looks, (ball,))
     joint = f"{called}_joint"
-    parts.joints[joint] = Joint(joint, "continuous", BASE, name, Transform(IDENTITY.rotation, centre), Y)
+    at = Transform(IDENTITY.rotation, centre) if parent == BASE else IDENTITY
+    parts.joints[joint] = Joint(joint, "continuous", parent, name, at, Y)
+
+
+def _add_knuckle(parts: _Parts, called: str, wheel: WheelGuess, turned: tuple[list[str], float]) -> None:
+    """A link at the middle of the wheel's tread on an upright joint; turned: the links in it, and by how much it turns at most [rad]."""
+    centre = apply(parts.wheels.base_from_root, wheel.centre[None])[0]
+    (names, most), name, joint = turned, f"{called}_link", f"{called}_joint"
+    masses, looks = _joined_at(parts, centre, names, name)
+    light = Inertial(LIGHT, np.zeros(3), np.eye(3) * LIGHT * wheel.radius**2)
+    parts.links[name] = Link(name, masses or light, looks, ())
+    parts.joints[joint] = Joint(joint, "revolute", BASE, name, Transform(IDENTITY.rotation, centre), Z, (-most, most))
+
+
+def _joined_at(parts: _Parts, centre: Floats, names: list[str], called: str) -> tuple[Inertial | None, tuple[Solid, ...]]:
+    """Mass and looks of links as those of one, which stands at ``centre`` (3,) [m] in the axes of base_link."""
+    links = [parts.model.links[n] for n in names]
+    frames = {n: compose(Transform(IDENTITY.rotation, -centre), parts.poses[n]) for n in names}
+    masses = [moved(link.inertial, frames[link.name]) for link in links if link.inertial is not None]
+    looks = tuple(replace(placed(s, frames[k.name]), name=called) for k in links for s in (k.visuals or k.collisions))
+    return joined(masses), looks
 
 
 def _castors(parts: _Parts, rest: list[str], foreign: Foreign) -> dict[str, Solid]:

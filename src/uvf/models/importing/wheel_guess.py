@@ -28,6 +28,10 @@ class WheelGuess:
     width: float
 
 
+Pair = tuple[WheelGuess, WheelGuess]
+CASTORS = ("cast", "swivel", "ball", "skid", "support")
+
+
 def may_turn(joint: Joint, is_called_wheel: bool) -> bool:
     """Whether a joint can turn for ever; of one with limits its name tells, too."""
     wide = joint.limits is None or joint.limits[1] - joint.limits[0] > 2 * np.pi or joint.limits == (0.0, 0.0)

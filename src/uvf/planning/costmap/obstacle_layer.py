@@ -188,6 +188,13 @@ class ObstacleLayer:
         down, across = np.ogrid[: part.shape[0], : part.shape[1]]
         part[(np.hypot(down + top - row, across + left - column) <= reach) & (part == LETHAL)] = FREE_SPACE
 
+    def is_known(self, points: Floats) -> bool:
+        """Whether something is known of the ground at all points (n, 2) [m]."""
+        columns, rows = np.floor((points - np.array(self.origin)) / self.resolution).astype(np.int64).T
+        n = len(self.cells)
+        inside = (rows >= 0) & (rows < n) & (columns >= 0) & (columns < n)
+        return bool(inside.all() and (self.cells[rows, columns] != NO_INFORMATION).all())
+
     def has_room(self, place: Point, radius: float) -> bool:
         """Whether no obstacle lies within ``radius`` [m] of a place [m]."""
         near = self.lethal_near(place, radius)

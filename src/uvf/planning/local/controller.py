@@ -29,6 +29,7 @@ EVADED = 6.0  # m within which what moves may have to be evaded
 NEAR = 4.0  # m, farther points cannot be reached before the next scan
 REMEMBERED = 1.0  # m within which the stop heeds obstacles that are out of view
 TURN_COUNTS = 0.3  # m/rad
+BACKING = 0.1  # m behind the outline that must be known of who backs up without looking
 
 
 @dataclass(frozen=True)
@@ -164,6 +165,11 @@ class LocalController:
     def has_room_to_turn(self, pose: Pose2) -> bool:
         """Whether no known obstacle is in the way of turning on the spot."""
         return self.layer.has_room((pose[0], pose[1]), self._plan_footprint.circumscribed_radius)
+
+    def knows_behind(self, pose: Pose2) -> bool:
+        """Whether the ground on which the vehicle would stand if it backed up a little has been seen."""
+        outline = np.array(self.footprint.outline)
+        return self.layer.is_known(transform(pose, outline[outline[:, 0] < 0.0] - np.array((BACKING, 0.0))))
 
     def leaving(self, costs: Costmap, pose: Pose2) -> Costmap:
         """The costmap in which the vehicle may leave a place that is too near to an obstacle."""

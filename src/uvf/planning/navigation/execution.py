@@ -86,7 +86,8 @@ class Executor:
         if done:
             self.report = Report(directive.number, done=True)
             return self.controller.halt()
-        found = self.controller.move(pose, velocity, wanted)
+        blind = directive.action == Action.BACK_UP and not self.controller.knows_behind(pose)
+        found = self.controller.halt() if blind else self.controller.move(pose, velocity, wanted)
         if found != STOP:
             self._stood_since = None
         elif self._stood_since is None:
