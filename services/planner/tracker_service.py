@@ -1,7 +1,7 @@
 """Directive, path, pose and the live scan -> velocity on ``cmd/planner``, ten times a second; never nearer to anything than allowed."""
 
 from dataclasses import replace
-from math import ceil
+from math import ceil, pi
 from typing import Annotated, Literal
 
 import numpy as np
@@ -61,7 +61,7 @@ TEAM_REACH = 3.0  # m
 SCAN_MAX_AGE = 0.6  # s; without sight nothing moves
 SIZE = 8.0  # m, side of the window in which obstacles are remembered
 FARTHEST = 0.95 * SIZE / 2  # m
-HORIZON = 2.8  # s that the local planner looks ahead
+HORIZON, FARTHEST_HORIZON = 2.8, 7.0  # s that the local planner looks ahead; of a car, half a turn but no more than the longer one
 REVERSE = 0.5  # of the speed forwards
 LATERAL_ACCELERATION = 1.5  # m/s^2, beyond which wheels slide
 COSTS_PERIOD = 0.5  # s between two costmaps that are told
@@ -204,13 +204,14 @@ class TrackerService(Service):
             LATERAL_ACCELERATION,
             turning_radius=tightest,
         )
+        horizon = min(max(HORIZON, pi * tightest / speed), FARTHEST_HORIZON)
         settings = ControllerSettings(
             size=SIZE,
             obstacle_range=FARTHEST,
             inflation=Inflation(0.55, 4.0),
             margin=params.margin,
             stop_margin=params.margin / 2,
-            window=WindowSettings(2.0 * speed * HORIZON + 2.0),
+            window=WindowSettings(2.0 * speed * horizon + 2.0),
             period=PERIOD,
             delay=PERIOD / 2,
             reaction=2.0 * PERIOD,
@@ -220,7 +221,7 @@ class TrackerService(Service):
             evasion=limits._replace(min_speed=-speed) if params.local_planner == "mppi" else None,
         )
         if params.local_planner == "mppi":
-            steps = ceil(HORIZON / PERIOD)
+            steps = ceil(horizon / PERIOD)
             planner: LocalPlanner = Mppi(limits, self._footprint, MppiSettings(steps=steps, step=PERIOD, noise_memory=0.7))
         else:
             planner = make_local_planner(params.local_planner, limits, self._footprint)
