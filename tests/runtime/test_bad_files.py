@@ -198,6 +198,7 @@ def in_a_row(*ys):
     return {f"wheel_{i}": {"x": 0.1, "y": y, "heading": 0.0} for i, y in enumerate(ys)}
 
 
+STEERING = {"wheelbase": 0.5, "steered": {"c": "d"}, "max_steering": 0.4, "steering_rate": 2.0}
 VEHICLES = {
     "too many beams": ("sensors.lidar.beams", 100_000, "sensors: lidar: beams: 100000 is above 4096"),
     "beams twice round": ("sensors.lidar.angle_increment", 0.04, "360 beams make 14.4 rad, more than a full turn"),
@@ -240,6 +241,16 @@ VEHICLES = {
         "ground.drive",
         {"kind": "skid_steer", "left": ["a", "b"], "right": ["c", "d"], "wheel_radius": 0.1, "track": 0.3},
         "key 'effective_track' is missing: track of the two wheels that turn as all of them do, scrubbing included",
+    ),
+    "a car that steers nothing": (
+        "ground.drive",
+        {"kind": "ackermann", "left": "a", "right": "b", "wheel_radius": 0.1, "track": 0.3, **STEERING, "steered": {}},
+        "steered: no wheel is steered; name the joints of at least one, or write kind: differential",
+    ),
+    "a car that steers too far": (
+        "ground.drive",
+        {"kind": "ackermann", "left": "a", "right": "b", "wheel_radius": 0.1, "track": 0.3, **STEERING, "max_steering": 1.3},
+        "max_steering: 1.3 rad: the centre of the turn would lie 0.139 m from the middle of the axle, between its wheels",
     ),
     "scrub of two wheels": ("ground.drive.effective_track", 0.2, "effective_track: unknown key 'effective_track'; there are: kind, left"),
     "another kind": ("kind", "fixed_wing", "kind is 'fixed_wing' but there is no 'air:' section"),

@@ -264,4 +264,32 @@ def bare(folder):
     return path
 
 
+def car(folder):
+    """Steering knuckles that weigh nothing and have their limits, the right one upside down; the root in the middle of the car."""
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def link(name, mass, shape=""):
+        inertia = f'<inertial><mass value="{mass}"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>'
+        return f'<link name="{name}">{inertia if mass else ""}{shape}</link>'
+
+    def joint(name, kind, ends, xyz, axis):
+        limit = '<limit lower="-0.55" upper="0.6" effort="5" velocity="4"/>' if kind == "revolute" else ""
+        return (
+            f'<joint name="{name}" type="{kind}"><parent link="{ends[0]}"/><child link="{ends[1]}"/>'
+            f'<origin xyz="{xyz}"/><axis xyz="{axis}"/>{limit}</joint>'
+        )
+
+    tyre = '<collision><origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.08" length="0.05"/></geometry></collision>'
+    body = '<collision><geometry><box size="0.7 0.3 0.1"/></geometry></collision>'
+    parts = [link("chassis", 8, body)]
+    for side, y, up in (("left", 0.2, 1), ("right", -0.2, -1)):
+        parts += [link(f"{side}_knuckle", 0), link(f"front_{side}", 0.5, tyre), link(f"rear_{side}", 0.5, tyre)]
+        parts.append(joint(f"{side}_steering_hinge", "revolute", ("chassis", f"{side}_knuckle"), f"0.25 {y} -0.02", f"0 0 {up}"))
+        parts.append(joint(f"front_{side}_wheel_joint", "continuous", (f"{side}_knuckle", f"front_{side}"), "0 0 0", "0 1 0"))
+        parts.append(joint(f"rear_{side}_wheel_joint", "continuous", ("chassis", f"rear_{side}"), f"-0.25 {y} -0.02", "0 1 0"))
+    path = folder / "car.urdf"
+    path.write_text(f'<robot name="car">{"".join(parts)}</robot>')
+    return path
+
+
 ROBOTS = {f.__name__: f for f in (solidworks, gazebo_urdf, gazebo_sdf, skid_steer, kobuki, bare)}

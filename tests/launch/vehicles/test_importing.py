@@ -10,7 +10,7 @@ import trimesh
 from launch.vehicles.importing import NOTES, import_vehicle
 from launch.vehicles.inspection import inspect
 from tests.launch.vehicles.driving import drive
-from tests.launch.vehicles.foreign_robots import ROBOTS
+from tests.launch.vehicles.foreign_robots import ROBOTS, car
 from uvf.models.shapes.mesh import triangles
 from uvf.models.urdf.model import load_urdf
 from uvf.models.urdf.source import XacroValues
@@ -134,6 +134,67 @@ def test_mecanum_wheels_that_the_urdf_has_elsewhere_are_a_fault(tmp_path, old, n
     path = tmp_path / "vehicles" / "it" / "vehicle.yaml"
     path.write_text(re.sub(old, new, path.read_text()))
     assert any(why in fault for fault in inspect(path.parent).faults)
+
+
+def import_car(tmp_path, *edits):
+    """Its folder and notes."""
+    source = car(tmp_path / "source")
+    for old, new in edits:
+        assert old in source.read_text()
+        source.write_text(source.read_text().replace(old, new))
+    folder = tmp_path / "vehicles" / "it"
+    return folder, import_vehicle(source, folder)
+
+
+@pytest.mark.parametrize("twist", [(0.5, 0.0), (0.4, 0.4), (0.4, -0.4), (-0.3, 0.2)])
+def test_a_car_drives_where_it_is_steered(tmp_path, twist):
+    folder, notes = import_car(tmp_path)
+    drive_file = load_vehicle(folder.parent, "it").ground.drive
+    assert (drive_file.kind, drive_file.track, drive_file.wheelbase) == ("ackermann", pytest.approx(0.4), pytest.approx(0.5))
+    assert 0.4 < drive_file.max_steering < 0.55  # of the middle; the inner wheel is at the file's smaller limit
+    assert any("a car: its wheels are steered: left_steering_hinge, right_steering_hinge" in line for line in notes), notes
+    assert any("motors and the rate of the steering" in line for line in notes)
+    assert inspect(folder).faults == []
+    driven = drive(folder, twist, 5.0)
+    assert driven.pose == pytest.approx(driven.expected, abs=0.02)
+
+
+def test_castors_that_swivel_make_no_car(tmp_path):
+    folder, _ = import_car(tmp_path, ('"0 0 0"/><axis', '"-0.06 0 0"/><axis'))
+    assert load_vehicle(folder.parent, "it").ground.drive.kind == "differential"
+
+
+def test_wheels_in_front_that_hang_a_little_high_are_put_on_the_floor(tmp_path):
+    folder, notes = import_car(tmp_path, ('"0.25 0.2 -0.02', '"0.25 0.2 -0.015'), ('"0.25 -0.2 -0.02', '"0.25 -0.2 -0.015'))
+    assert any("steered wheels put on the floor: front_left_wheel_joint by -5.0 mm" in line for line in notes), notes
+    assert inspect(folder).faults == []
+
+
+def test_how_far_it_steers_is_guessed_where_no_file_says_it(tmp_path):
+    _, notes = import_car(tmp_path, ('lower="-0.55" upper="0.6"', 'lower="0" upper="0"'))
+    assert any("set it in vehicle.yaml" in line and "how far it steers" in line for line in notes), notes
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ("wheelbase: .*", "wheelbase: 0.6", "wheelbase: 0.6 m, but the wheel 'steered_left_joint' of the URDF is 0.5 m from the axle"),
+        ("max_steering: .*", "max_steering: 0.6", "max_steering: 0.6 rad turns 'steering_left_joint' by 0.75"),
+        (
+            "steering_left_joint: .*\n(.*)steering_right_joint: .*",
+            "steering_left_joint: steered_right_joint\n\\1steering_right_joint: steered_left_joint",
+            "the wheel 'steered_right_joint' does not hang in it, so it would not be steered",
+        ),
+        ("steering_left_joint: .*", "wheel_left_joint: steered_left_joint", "the joint wheel_left_joint is named twice"),
+        ("max_angular: .*", "max_angular: 9.0", "max_angular: 9 rad/s, but without load the motors reach"),
+    ],
+)
+def test_a_car_that_the_urdf_has_otherwise_is_a_fault(tmp_path, old, new, why):
+    folder, _ = import_car(tmp_path)
+    path = folder / "vehicle.yaml"
+    path.write_text(re.sub(old, new, path.read_text()))
+    faults = inspect(folder).faults
+    assert any(why in fault for fault in faults), faults
 
 
 def test_a_wrong_effective_track_is_a_fault_that_names_the_right_one(tmp_path):

@@ -127,14 +127,18 @@ class ManualControl:
         return True
 
     def _drive(self, sticks: Sticks) -> None:
-        """Throttle stick forward = forward; either stick right = right turn. Roll moves a vehicle to the right that can drive sideways."""
+        """Throttle stick forward = forward; either stick right = right turn. Roll moves a vehicle to the right that can drive sideways.
+
+        Of a car the sticks are the steering.
+        """
         body = self._line.facts.file.ground
         assert body is not None
-        aside, turn = (sticks.roll, sticks.yaw) if body.drive.kinematics.goes_sideways else (0.0, _part(sticks.roll + sticks.yaw))
+        drive, linear = body.drive.kinematics, sticks.throttle * body.max_linear
+        aside, turn = (sticks.roll, sticks.yaw) if drive.goes_sideways else (0.0, _part(sticks.roll + sticks.yaw))
         self._line.commands["drive"] = DriveCommand(
             timestamp=stamp(self._line.latest.sim_time),
-            linear=sticks.throttle * body.max_linear,
-            angular=-turn * body.max_angular,
+            linear=linear,
+            angular=-turn * (linear / drive.turning_radius if drive.turning_radius else body.max_angular),
             lateral=-aside * body.max_linear,
         )
 

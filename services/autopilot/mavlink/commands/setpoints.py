@@ -27,7 +27,7 @@ from services.autopilot.mavlink.commands.guided import go_to
 from services.autopilot.mavlink.commands.places import BadPlace, place_of
 from services.autopilot.mavlink.connection.line import Holder, Sender, VehicleConnection
 from uvf.maths.geodesy import Floats
-from uvf.maths.kinematics import Twist
+from uvf.maths.kinematics import DriveKinematics, Twist
 from uvf.maths.rotations import to_euler
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.names import frame_name
@@ -38,6 +38,7 @@ ALONE = 1.0  # s, wall: after which a target without another is no stream
 IGNORE_PLACE, IGNORE_Z, IGNORE_VELOCITY, IGNORE_VZ, IGNORE_RATE = 0b011, 0b100, 0b011_000, 0b100_000, 1 << 11
 ATTITUDE_IGNORED, THRUST_IGNORED = 1 << 7, 1 << 6
 BODY_FRAMES = (mav.MAV_FRAME_BODY_NED, mav.MAV_FRAME_BODY_OFFSET_NED, mav.MAV_FRAME_BODY_FRD)
+CREEPS = 0.3  # of the speed asked for, at which a car turns round
 TURN_P = 2.0  # 1/s, turn rate of a ground vehicle per error of heading
 TO_GO = {False: (Mode.MODE_HOLD,), True: (Mode.MODE_HOLD, Mode.MODE_MISSION)}
 """Modes, of aircraft and of ground vehicles, in which a position that comes alone is gone to."""
@@ -127,7 +128,7 @@ class Setpoints:
         if m.coordinate_frame in BODY_FRAMES and self._line.facts.is_ground:
             rate = 0.0 if m.type_mask & IGNORE_RATE else m.yaw_rate
             ahead, aside = (math.nan, math.nan) if m.type_mask & IGNORE_VELOCITY else (m.vx, -m.vy)
-            self._drive(sender, Twist(ahead, -rate, aside if self._goes_sideways else 0.0))
+            self._drive(sender, Twist(ahead, -rate, aside if self._kinematics.goes_sideways else 0.0))
         elif m.coordinate_frame != mav.MAV_FRAME_LOCAL_NED:
             self._refuse(sender, f"{frame_name(m.coordinate_frame)} is not supported: choose LOCAL_NED")
         else:
@@ -193,14 +194,15 @@ class Setpoints:
         return float(self._anchor[1][2]) if self._anchor is not None else 0.0
 
     @property
-    def _goes_sideways(self) -> bool:
+    def _kinematics(self) -> DriveKinematics:
         body = self._line.facts.file.ground
-        return body is not None and body.drive.kinematics.goes_sideways
+        assert body is not None
+        return body.drive.kinematics
 
     def _drive_along(self, target: Target, sender: Sender) -> None:
         """A velocity over ground: turns to it, and drives as far as it looks that way, or goes there as it stands where it can.
 
-        A place is for ``tick``.
+        A car drives on while it turns. A place is for ``tick``.
         """
         nav = self._line.latest.nav
         if nav is None or not target.has_velocity:
@@ -208,10 +210,11 @@ class Setpoints:
         east, north = target.velocity[:2]
         speed = math.hypot(east, north)
         off = math.remainder(math.atan2(north, east) - yaw_of(nav.orientation), math.tau) if speed > 0 else 0.0
-        if self._goes_sideways:
+        if self._kinematics.goes_sideways:
             self._drive(sender, Twist(speed * math.cos(off), 0.0, speed * math.sin(off)))
         else:
-            self._drive(sender, Twist(speed * max(math.cos(off), 0.0), TURN_P * off))
+            least = CREEPS if self._kinematics.turning_radius else 0.0
+            self._drive(sender, Twist(speed * max(math.cos(off), least), TURN_P * off))
 
     def _drive(self, sender: Sender, twist: Twist) -> None:
         status = self._line.latest.status

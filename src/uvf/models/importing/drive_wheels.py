@@ -184,7 +184,7 @@ def _score(pair: Pair, foreign: Foreign, middle: Floats) -> tuple[float, ...]:
     score = 10.0 * all(w.joint.name in told for w in pair)
     score += 2.0 * _called_driven(pair) - 5.0 * any(PASSIVE.search(n) for n in names)
     score += 2.0 * (any(LEFT.search(n) for n in names) and any(RIGHT.search(n) for n in names))
-    score -= 3.0 * any(w.joint.mimics is not None for w in pair)
+    score -= 3.0 * any(w.joint.mimics is not None for w in pair) + 4.0 * any(swivels(foreign.model, w.joint) for w in pair)
     between = (pair[0].centre + pair[1].centre) / 2
     return score, round(pair[0].radius, 3), -round(float(np.linalg.norm(between - middle)), 3)
 

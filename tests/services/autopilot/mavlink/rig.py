@@ -88,6 +88,7 @@ def rover_facts(**drive):
 
 
 ROVER_FACTS = rover_facts()
+CAR_FACTS = rover_facts(kind="ackermann", wheelbase=0.3, steered={"a": "b", "c": "d"}, max_steering=0.4, steering_rate=2.0)
 MECANUM_FACTS = rover_facts(kind="mecanum", left=["a", "b"], right=["c", "d"], wheelbase=0.2)
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from schemas.messages import Mode
-from tests.services.autopilot.mavlink.rig import OTHER, PLANE, ROVER, Rig, of, texts
+from tests.services.autopilot.mavlink.rig import CAR_FACTS, OTHER, PLANE, ROVER, Rig, of, texts
 from uvf.mavlink import dialect as mav
 from uvf.models.vehicle.air import CommandProperties
 
@@ -16,8 +16,8 @@ def channels(system, *us, high=()):
     return mav.MAVLink_rc_channels_override_message(system, 1, *us, *[RELEASED] * (8 - len(us)), *high)
 
 
-def by_hand():
-    rig = Rig()
+def by_hand(**settings):
+    rig = Rig(**settings)
     for vehicle in (rig.plane, rig.rover):
         vehicle.status.mode = Mode.MODE_MANUAL
     rig.run()
@@ -45,6 +45,16 @@ def test_channels_drive_a_rover_forwards_and_backwards():
     rig = by_hand()
     command = said(rig, channels(ROVER, RELEASED, RELEASED, 1250, 2000), "drive")
     assert (command.linear, command.angular) == (-0.25, -2.0)
+
+
+def test_sticks_of_a_car_steer_it_and_turn_nothing_while_it_stands():
+    rig = by_hand(rover=CAR_FACTS)
+    radius = CAR_FACTS.file.ground.drive.kinematics.turning_radius
+    right = said(rig, channels(ROVER, RELEASED, RELEASED, 2000, 2000), "drive")
+    assert (right.linear, right.angular) == pytest.approx((0.5, -0.5 / radius))
+    back = said(rig, channels(ROVER, RELEASED, RELEASED, 1250, 2000), "drive")
+    assert (back.linear, back.angular) == pytest.approx((-0.25, 0.25 / radius))
+    assert said(rig, channels(ROVER, RELEASED, RELEASED, 1500, 2000), "drive").angular == 0.0
 
 
 def test_what_is_not_named_stays_and_what_is_released_is_centred():

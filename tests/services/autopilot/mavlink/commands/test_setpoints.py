@@ -5,7 +5,7 @@ import math
 import pytest
 
 from schemas.messages import Mode, Vector3
-from tests.services.autopilot.mavlink.rig import MECANUM_FACTS, OTHER, PLANE, ROVER, Rig, long, of, texts
+from tests.services.autopilot.mavlink.rig import CAR_FACTS, MECANUM_FACTS, OTHER, PLANE, ROVER, Rig, long, of, texts
 from uvf.maths.rotations import from_euler
 from uvf.mavlink import dialect as mav
 from uvf.runtime.messages.convert import quaternion
@@ -216,6 +216,15 @@ def test_a_rover_that_goes_sideways_does_so():
     north = said(rig, local(VELOCITY, velocity=(0.3, 0.0, 0.0), system=ROVER), "drive")
     assert (north.linear, north.angular, north.lateral) == pytest.approx((0.0, 0.0, 0.3), abs=1e-6)
     assert said(rig, local(0b010111000111, velocity=(0.0, NAN, 0.0), frame=BODY, system=ROVER), "drive") is None
+
+
+def test_a_car_drives_on_while_it_turns_to_a_velocity_over_ground():
+    rig = rig_in(rover=CAR_FACTS)
+    rig.rover.nav.orientation.CopyFrom(quaternion(from_euler(0.0, 0.0, 0.0)))  # looks east
+    west = said(rig, local(VELOCITY, velocity=(0.0, -0.3, 0.0), system=ROVER), "drive")
+    assert west.linear == pytest.approx(0.09) and abs(west.angular) > 1.0
+    east = said(rig, local(VELOCITY, velocity=(0.0, 0.3, 0.0), system=ROVER), "drive")
+    assert (east.linear, east.angular) == pytest.approx((0.3, 0.0), abs=1e-6)
 
 
 @pytest.mark.parametrize("mode", [Mode.MODE_MANUAL, Mode.MODE_HOLD, Mode.MODE_MISSION])
