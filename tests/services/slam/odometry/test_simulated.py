@@ -6,21 +6,27 @@ import msgspec
 import numpy as np
 import pytest
 
+from launch.vehicles.importing import import_vehicle
 from schemas import topics
 from schemas.messages import WheelCommand
 from services.autopilot.ground.build import hosts as autopilot
 from services.planner.build import build as planner
 from services.sim_ground.build import build as simulator
 from services.slam.build import build as slam
+from tests.launch.vehicles.foreign_robots import skid_steer
+from uvf.control.steered_ramp import velocity_ramp
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.models.scenario import ROOT, load_scenario
+from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.sensors import GnssSensor, Mount
 from uvf.models.world.file import Box
 from uvf.runtime.contract.declaration import Writes, topic
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import seconds, yaw_of
+from uvf.runtime.messages.wheels import wheel_command
 from uvf.runtime.time.lockstep import Lockstep
 
 KEPT = ("ODOMETRY", "TRUTH", "EVENTS", "NAV_STATE")
@@ -157,3 +163,72 @@ def test_on_a_ramp_the_way_is_told_as_it_is_from_above():
     assert heard["TRUTH"][-1].position.z > 0.7
     assert told.pose.position.x == pytest.approx(true.x, rel=5e-3)
     assert way > 4.0
+
+
+def on_the_empty_floor(model, folder, file):
+    """The demo's rover as another vehicle, with nothing about it but walls far away."""
+    site = demo()
+    burger = site.members["burger"]
+    start = CHANGE(burger.entry.start, x=0.0, y=0.0, yaw=0.0)
+    walls = [Box(f"wall_{i}", (x, y, 0.5), (8.0, 0.2, 1.0), (0.0, 0.0, yaw)) for i, (x, y, yaw) in enumerate(WALLS)]
+    world = CHANGE(site.world, walls=[], boxes=walls, cylinders=[], meshes=[], floor=(-5.0, -5.0, 5.0, 5.0))
+    member = replace(burger, folder=folder, file=file, entry=CHANGE(burger.entry, model=model, start=start))
+    return replace(site, world=world, members={"burger": member})
+
+
+WALLS = ((0.0, 4.0, 0.0), (0.0, -4.0, 0.0), (4.0, 0.0, 1.5708), (-4.0, 0.0, 1.5708))
+
+
+def driven_by(body, wanted):
+    """Commands as the autopilot makes them, of what is wanted at a time [s], after a second of standing."""
+    ramp, drive = velocity_ramp(body), body.drive.kinematics
+
+    class Driver(Service):
+        name, hz = "driver", 50.0
+
+        class Outputs(Writes):
+            wheels: WheelCommand = topic(topics.WHEEL_COMMAND)
+
+        def step(self, t, now):
+            speeds = drive.wheels(ramp.lead(wanted(t) if t > 1.0 else Twist(0.0, 0.0), 0.02))
+            return self.Outputs(wheels=wheel_command(t, speeds, ramp.steering))
+
+    return ServiceInstance(Driver, Driver, "burger")
+
+
+def farthest_off(heard):
+    """Largest share of the way by which the odometry is off, after the first metre, and the way [m]."""
+    rows = []
+    for _, told, true, way in beside_truth(heard):
+        if way > 1.0:
+            rows.append((np.hypot(told.pose.position.x - true.x, told.pose.position.y - true.y) / way, way))
+    return max(off for off, _ in rows), rows[-1][1]
+
+
+def hasty(t):
+    """A car that speeds up and stops hard again and again, forwards and backwards, steered from stop to stop."""
+    way = 1.0 if t % 4.0 < 2.0 else -1.0
+    return Twist(0.6 * way if t % 2.0 < 1.5 else 0.0, 0.6 * np.sin(2.0 * t))
+
+
+def test_a_hasty_car_knows_its_way():
+    file = load_vehicle(ROOT / "vehicles", "minicar")
+    site = on_the_empty_floor("minicar", ROOT / "vehicles" / "minicar", file)
+    heard = run([*simulator(site), *slam(site), driven_by(file.ground, hasty)], 40.0)
+    off, way = farthest_off(heard)
+    assert way > 10.0
+    assert off < 0.02
+
+
+def test_a_vehicle_on_mecanum_wheels_knows_its_way(tmp_path):
+    source, folder = skid_steer(tmp_path / "source"), tmp_path / "vehicles" / "it"
+    source.write_text(source.read_text().replace("libgazebo_ros_skid_steer_drive.so", "gz-sim-mecanum-drive-system"))
+    import_vehicle(source, folder)
+    lidar, imu = (getattr(load_vehicle(ROOT / "vehicles", "burger").sensors, name) for name in ("lidar", "imu"))
+    file = load_vehicle(folder.parent, "it")
+    file = CHANGE(file, sensors=CHANGE(file.sensors, lidar=CHANGE(lidar, mount=Mount((0.0, 0.0, 0.3))), imu=imu))
+    site = on_the_empty_floor("it", folder, file)
+    heard = run([*simulator(site), *slam(site), driven_by(file.ground, lambda t: Twist(0.3 * np.sin(t), 0.4, 0.3 * np.cos(0.7 * t)))], 30.0)
+    off, way = farthest_off(heard)
+    assert way > 6.0
+    assert off < 0.02
