@@ -68,14 +68,14 @@ def situation(costs, state, path, obstacles=NOBODY):
     return LocalSituation(state, local_window(costs, (state.x, state.y), path, FACTORS, WindowSettings()), path, obstacles)
 
 
-def drive(planner, costs, goal, *, start=START, seconds=20.0, obstacles_at=lambda t: NOBODY):
+def drive(planner, costs, goal, *, start=START, seconds=20.0, obstacles_at=lambda t: NOBODY, limits=LIMITS):
     """States until the goal is within 0.15 m or the time is over; a planner that knows nothing free stops the vehicle."""
     states = [start]
     for k in range(round(seconds / DT)):
         state = states[-1]
         path = path_to(costs, state, goal)
         command = planner.command(situation(costs, state, path, obstacles_at(k * DT)))
-        states.append(moved(state, command or (0.0, 0.0)))
+        states.append(moved(state, command or (0.0, 0.0), limits))
         if np.hypot(states[-1].x - goal[0], states[-1].y - goal[1]) < 0.15:
             break
     return states
