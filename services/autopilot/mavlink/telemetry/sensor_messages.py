@@ -10,6 +10,7 @@ from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import FLU_FROM_FRD, from_euler, rotate
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.scaling import I16, whole
+from uvf.models.vehicle.drive import AckermannFile
 from uvf.runtime.messages.convert import array
 from uvf.runtime.messages.wheels import speeds_of
 
@@ -78,7 +79,7 @@ def vibration(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
 
 
 def servo_output(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """SERVO_OUTPUT_RAW [us] at ``t`` [s]: aileron, elevator, throttle, rudder, flap, brake; of a ground vehicle left and right wheel."""
+    """SERVO_OUTPUT_RAW [us] at ``t`` [s]: aileron, elevator, throttle, rudder, flap, brake; else wheels, then steering."""
     pulses: list[int] = []
     if (surfaces := latest.fresh(latest.surface_command)) is not None:
         pulses = _surfaces(facts, surfaces)
@@ -102,8 +103,11 @@ def _surfaces(facts: VehicleInfo, asked: SurfaceCommand) -> list[int]:
 def _wheels(facts: VehicleInfo, asked: WheelCommand) -> list[int]:
     if facts.file.ground is None:
         return []
-    fastest = facts.file.ground.max_linear / facts.file.ground.drive.wheel_radius
-    return [_pulse(speed / fastest) for speed in speeds_of(asked)[:OUTPUTS]]
+    drive = facts.file.ground.drive
+    parts = [speed * drive.wheel_radius / facts.file.ground.max_linear for speed in speeds_of(asked)]
+    if isinstance(drive, AckermannFile):
+        parts.append(-asked.steering / drive.max_steering)
+    return [_pulse(part) for part in parts[:OUTPUTS]]
 
 
 def _pulse(part: float) -> int:

@@ -10,7 +10,7 @@ import pytest
 from schemas.messages import AirData, EstimateQuality, Imu, NavStatus, SurfaceCommand, Targets, Vector3, WheelCommand
 from services.autopilot.mavlink.connection.vibration import Vibration
 from services.autopilot.mavlink.telemetry.sensor_messages import body_frd
-from tests.services.autopilot.mavlink.rig import PLANE, PLANE_FACTS, ROVER, Rig, acks, long, of
+from tests.services.autopilot.mavlink.rig import CAR_FACTS, PLANE, PLANE_FACTS, ROVER, Rig, acks, long, of
 from uvf.maths import atmosphere
 from uvf.maths.rotations import FLU_FROM_FRD, from_euler, inverse, rotate, to_euler
 from uvf.mavlink import dialect as mav
@@ -86,6 +86,13 @@ def test_wheels_are_pulses_in_parts_of_the_top_speed():
     rig.rover.sensed = {"wheel_command": WheelCommand(left=fastest / 2, right=-2 * fastest)}
     m = newest(rig, "SERVO_OUTPUT_RAW", ROVER, seconds=0.5)
     assert [getattr(m, f"servo{n}_raw") for n in range(1, 5)] == [1750, 1000, 0, 0]
+
+
+def test_behind_the_wheels_of_a_car_comes_its_steering_to_the_right():
+    rig = Rig(rover=CAR_FACTS)
+    rig.rover.sensed = {"wheel_command": WheelCommand(left=0.0, right=0.0, steering=0.2)}
+    m = newest(rig, "SERVO_OUTPUT_RAW", ROVER, seconds=0.5)
+    assert [getattr(m, f"servo{n}_raw") for n in range(1, 5)] == [1500, 1500, 1250, 0]
 
 
 def test_shaking_is_told_and_steady_force_and_slow_motion_are_none():
