@@ -35,10 +35,17 @@ def test_of_a_crowd_the_nearest_count():
 
 
 def test_what_is_seen_is_known_better():
-    seen = np.array(((2.8, 0.8), (7.0, 7.0)))
+    seen = np.array(((2.75, 0.85), (2.8, 0.8), (2.9, 0.7), (7.0, 7.0)))
     discs = at((3.0, 1.0, 0.3), (2.2, 1.0, 0.2), (-1.0, 0.0, 0.1))
     assert unseen(discs, seen, HERE).tolist() == discs[1:].tolist()
     assert unseen(discs, NOTHING, HERE).tolist() == discs.tolist()
+
+
+@pytest.mark.parametrize("forward", [-0.1, 0.0, 0.1])
+def test_a_lidar_on_top_does_not_show_the_body_below_it(forward):
+    round_about = np.linspace(0, 6.2, 60)
+    lidar = np.array((3.0 + forward, 1.0)) + 0.035 * np.column_stack((np.cos(round_about), np.sin(round_about)))
+    assert len(unseen(at((3.0, 1.0, 0.2)), lidar, HERE)) == 1
 
 
 @pytest.mark.parametrize("heading", np.linspace(0.0, 2 * np.pi, 9))

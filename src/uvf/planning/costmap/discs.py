@@ -7,6 +7,7 @@ Floats = NDArray[np.float64]
 Point = tuple[float, float]
 
 BLURRED = 0.15  # m between where one says it is and where another one sees it
+ABOUT, WIDE = 0.75, 0.5  # of the radius: how far to the sides of the middle a disc is looked for, and how wide what shows it is
 NEAREST = 16  # vehicles about one
 SPACING = 0.05  # m between the points that stand for a disc
 MOMENTS = 4  # at which those that move are looked at
@@ -28,17 +29,27 @@ def unseen(discs: Floats, seen: Floats, here: Point) -> Floats:
     """Those of the discs (k, 3) [m] that the points (n, 2) [m] which a lidar at ``here`` sees do not show: what it shows is known better.
 
     A disc is shown by what is seen about or before the middle of it: a wall that it stands beside, or that is seen above it, hides
-    nobody, if it is half the radius away from the middle or more.
+    nobody, if it is half the radius away from the middle or more. What is seen must be wide, too: of vehicles that carry their lidars on
+    top one sees the other's lidar, and not the body below it.
     """
     middles = discs[:, None, :2]
     beams = middles - here
     ahead = beams / np.maximum(np.linalg.norm(beams, axis=2, keepdims=True), 1e-9)
     offset = seen - middles
     before = -(offset * ahead).sum(axis=2)
-    beside = np.abs(offset[..., 0] * ahead[..., 1] - offset[..., 1] * ahead[..., 0])
-    shows = (before >= -discs[:, 2:] / 4) & (beside <= discs[:, 2:] / 2) & (np.hypot(before, beside) <= discs[:, 2:] + BLURRED)
-    hidden: Floats = discs[~shows.any(axis=1)]
+    beside = offset[..., 0] * ahead[..., 1] - offset[..., 1] * ahead[..., 0]
+    radii = discs[:, 2:]
+    about = (before >= -radii / 4) & (np.abs(beside) <= ABOUT * radii) & (np.hypot(before, beside) <= radii + BLURRED)
+    is_wide = _spread(beside, about) >= WIDE * discs[:, 2]
+    hidden: Floats = discs[~(is_wide & (about & (np.abs(beside) <= radii / 2)).any(axis=1))]
     return hidden
+
+
+def _spread(values: Floats, chosen: NDArray[np.bool_]) -> Floats:
+    """(k,) from the smallest to the largest of the chosen values (k, n), -inf where none is chosen."""
+    low, high = np.where(chosen, values, np.inf), np.where(chosen, values, -np.inf)
+    spread: Floats = high.max(axis=1, initial=-np.inf) - low.min(axis=1, initial=np.inf)
+    return spread
 
 
 def coming(discs: Floats, velocities: Floats, ahead: float) -> Floats:
