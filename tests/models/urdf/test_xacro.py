@@ -163,3 +163,14 @@ def test_parts_are_turned_on_by_the_environment_and_those_that_can_be_are_told(p
     given = XacroValues(environment={"BOT_LASER": "1", "BOT_NAME": "that"})
     assert [link.get("name") for link in read_xml(path, given).findall("link")] == ["laser", "that"]
     assert "BOT_LASER" not in os.environ
+
+
+def test_what_name_space_the_prefix_stands_for_counts_for_nothing(package):
+    """Robots of ROS's first years declare a schema of Gazebo's."""
+    path = package / "robot/urdf/old.urdf.xacro"
+    path.write_text(
+        robot('<xacro:include filename="$(find parts)/urdf/all.xacro"/>').replace(
+            "http://www.ros.org/wiki/xacro", "http://playerstage.sourceforge.net/gazebo/xmlschema/#interface"
+        )
+    )
+    assert [link.get("name") for link in read_xml(path).iter("link")] == ["left", "right"]

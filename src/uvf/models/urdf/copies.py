@@ -14,7 +14,7 @@ from typing import Any
 
 from lxml import etree
 
-from uvf.models.urdf.marked import XACRO_SPACES, marked
+from uvf.models.urdf.marked import XACRO, marked
 from uvf.models.urdf.packages import is_file, package_folder
 from uvf.models.yaml_data import BadInput
 
@@ -80,7 +80,7 @@ class Copies:
                 self.switches.update(SWITCH.findall(value))
                 tag.set(key, FIND.sub(self._found, value))
             tag.text = FIND.sub(self._found, tag.text) if tag.text else tag.text
-        includes = [tag for space in XACRO_SPACES for tag in root.iter(f"{{{space}}}include")]
+        includes = [tag for tag in root.iter("{*}include") if tag.prefix == XACRO]
         for tag in includes:
             self._prepare(tag)
         self._write(name, etree.tostring(root))

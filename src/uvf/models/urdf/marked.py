@@ -8,7 +8,8 @@ from lxml import etree
 from uvf.models.yaml_data import BadInput
 
 LINE = "uvf_line"
-XACRO_SPACES = ("http://www.ros.org/wiki/xacro", "http://ros.org/wiki/xacro", "http://wiki.ros.org/xacro")
+XACRO = "xacro"
+"""The prefix by which xacro knows its tags; whatever name space it stands for, and old files have many, it does not look at."""
 MARKED = ("link", "joint", "material")
 
 

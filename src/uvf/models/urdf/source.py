@@ -15,7 +15,7 @@ from lxml import etree
 from xacro import substitution_args
 
 from uvf.models.urdf.copies import Copies
-from uvf.models.urdf.marked import XACRO_SPACES, one_line, parsed
+from uvf.models.urdf.marked import XACRO, one_line, parsed
 from uvf.models.urdf.packages import is_file
 from uvf.models.yaml_data import BadInput, nearest
 
@@ -43,7 +43,7 @@ def read_xml(path: Path, values: XacroValues = NO_VALUES, note: Note | None = No
         known = (p.name for pattern in ("*.urdf", "*.xacro") for p in path.parent.glob(pattern))
         raise BadInput(f"{path}: no such file; {nearest(path.name, known)}")
     root = parsed(path)
-    if not any(space in XACRO_SPACES for space in root.nsmap.values()):
+    if XACRO not in root.nsmap:
         return root
     with tempfile.TemporaryDirectory(prefix="uvf-xacro-") as scratch:
         copies = Copies(path, Path(scratch), note)
