@@ -3,9 +3,10 @@
 import time
 
 from schemas import topics
-from schemas.messages import ArmRequest, DriveCommand, Mode, ModeRequest
+from schemas.messages import ArmRequest, Mode, ModeRequest
 from uvf.client import Client
 from uvf.maths.kinematics import Twist
+from uvf.runtime.messages.wheels import drive_command
 from uvf.runtime.state.stop_all import told
 
 SOURCE = "teleop"
@@ -23,8 +24,7 @@ class TeleopLink:
 
     def send(self, vehicle: str, command: Twist) -> None:
         """Publishes a velocity command [m/s, rad/s] for a ground vehicle."""
-        linear, angular, lateral = command
-        self._client.send(vehicle, topics.DRIVE.by(SOURCE), DriveCommand(linear=linear, angular=angular, lateral=lateral))
+        self._client.send(vehicle, topics.DRIVE.by(SOURCE), drive_command(command))
 
     def take_over(self, vehicle: str) -> str:
         """Asks for mode MANUAL and arms; what was refused and why, "" if nothing."""

@@ -131,7 +131,7 @@ def _ground(name: str, wheels: DriveWheels, model: UrdfModel, limits: StatedLimi
     mass = sum(link.inertial.mass for link in model.links.values() if link.inertial is not None)
     turning = limits.angular or float(f"{min(2.0, 2 * fastest / wheels.turning_track):.3g}")
     if wheels.steered is not None:
-        turning = float(f"{fastest * tan(max_steering(wheels, model)) / wheels.wheelbase:.3g}")
+        turning = float(f"{fastest * tan(_max_steering(wheels, model)) / wheels.wheelbase:.3g}")
     return {
         "urdf": f"{name}.urdf",
         "drive": _drive(wheels, model),
@@ -149,7 +149,7 @@ def _ground(name: str, wheels: DriveWheels, model: UrdfModel, limits: StatedLimi
     }
 
 
-def max_steering(wheels: DriveWheels, model: UrdfModel) -> float:
+def _max_steering(wheels: DriveWheels, model: UrdfModel) -> float:
     """Largest steering of a car [rad], of a wheel in the middle between the steered ones."""
     limits = model.joints["steering_left_joint"].limits
     assert limits is not None
@@ -169,7 +169,7 @@ def _drive(wheels: DriveWheels, model: UrdfModel) -> dict[str, Any]:
             **sizes,
             "wheelbase": round(wheels.wheelbase, 6),
             "steered": steered,
-            "max_steering": floor(100 * max_steering(wheels, model)) / 100,
+            "max_steering": floor(100 * _max_steering(wheels, model)) / 100,
             "steering_rate": STEERING_RATE,
         }
     if wheels.kind == "mecanum":

@@ -51,13 +51,13 @@ class Treads:
         touching = {c.link: c for c in sorted(contacts, key=lambda c: c.load) if c.load > 0.0}
         n = len(self.wheels)
         slips, loads, frames, renewed = np.zeros((n, 2)), np.zeros(n), np.zeros((n, 2, 3)), np.zeros(n)
-        body, turning = np.array(rolling.body.velocity), np.array(rolling.body.angular_velocity)
+        root, body, turning = (np.array(v) for v in (rolling.body.position, rolling.body.velocity, rolling.body.angular_velocity))
         for i, (wheel, link, spin) in enumerate(zip(self.wheels, rolling.wheels, rolling.spins, strict=True)):
             if (mark := touching.get(wheel)) is None:
                 continue
             axle, place = rotate(link.orientation, self._axles[i]), np.array(mark.place)
             frames[i] = self._turned[i] @ wheel_frame(axle, np.array(mark.normal))
-            carried = body + spin_velocity(turning, place - np.array(rolling.body.position))
+            carried = body + spin_velocity(turning, place - root)
             slips[i] = frames[i] @ (carried + spin_velocity(spin * axle, place - link.position))
             loads[i] = mark.load
             renewed[i] = -expm1(-abs(frames[i, 0] @ carried) * dt / self._contact)

@@ -34,7 +34,7 @@ FREE = 0.0  # friction across rollers, and along wheels that nothing drives
 SAG = 1e-3  # m, by which tyres of several wheels a side give under the vehicle's weight
 SETTLES = 0.7  # damping ratio of that
 STILL = (0.0, 0.0, 0.0)
-STRAIGHT: Mapping[str, float] = {}
+UNSTEERED: Mapping[str, float] = {}
 SETTLING = 0.3  # s of physics before the start: the wheels sink into their contacts
 
 
@@ -145,7 +145,7 @@ class BulletWorld:
                     self.engine.set_dynamics(loaded.index, wheel, lateralFriction=share * loaded.friction)
 
     def advance(
-        self, wheels: Mapping[str, Sequence[float]], duration: float, since: float = 0.0, steering: Mapping[str, float] = STRAIGHT
+        self, wheels: Mapping[str, Sequence[float]], duration: float, since: float = 0.0, steering: Mapping[str, float] = UNSTEERED
     ) -> None:
         """Moves the world by ``duration`` [s]; a vehicle without a finite command brakes its wheels to a stop.
 

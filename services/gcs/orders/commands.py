@@ -8,7 +8,6 @@ from google.protobuf.message import Message
 
 from schemas.messages import (
     ClockRequest,
-    DriveCommand,
     Event,
     GimbalCommand,
     GoalRequest,
@@ -66,6 +65,7 @@ from uvf.control.teleop_drive import SCALINGS
 from uvf.maths.kinematics import Twist
 from uvf.runtime.contract.service import Answer
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.wheels import drive_command
 from uvf.runtime.state.stop_all import StopVoice
 
 ALSO_IN_THE_PAST = (OfTime, StopAll, AnswerControl, LeaveWheel)
@@ -101,8 +101,8 @@ class Commander:
                     self._heed(t, session, action, out)
         self._handover.hand_over(t)
         now = stamp(self._model.sim_time)
-        for name, (linear, angular, lateral) in self.by_hand.commands(t).items():
-            out.drive[name] = DriveCommand(timestamp=now, linear=linear, angular=angular, lateral=lateral)
+        for name, command in self.by_hand.commands(t).items():
+            out.drive[name] = drive_command(command, now)
         return out
 
     def _heed(self, t: float, session: BrowserSession, action: PageAction, out: Outbox) -> None:

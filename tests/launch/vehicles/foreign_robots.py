@@ -3,6 +3,9 @@
 import numpy as np
 import trimesh
 
+from launch.vehicles.importing import import_vehicle
+from uvf.models.urdf.source import XacroValues
+
 BOX_INERTIA = '<inertia ixx="0.02" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.04"/>'
 WHEEL_INERTIA = '<inertia ixx="0.0004" ixy="0" ixz="0" iyy="0.0004" iyz="0" izz="0.0007"/>'
 
@@ -293,3 +296,12 @@ def car(folder):
 
 
 ROBOTS = {f.__name__: f for f in (solidworks, gazebo_urdf, gazebo_sdf, skid_steer, kobuki, bare)}
+
+
+def import_one(tmp_path, name, edit=None, arguments=None):
+    """The notes of importing one of them as ``vehicles/it``, with a part of its file replaced."""
+    source = ROBOTS[name](tmp_path / "source")
+    if edit is not None:
+        assert edit[0] in source.read_text()
+        source.write_text(source.read_text().replace(*edit))
+    return import_vehicle(source, tmp_path / "vehicles" / "it", XacroValues(arguments or {}))

@@ -9,10 +9,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from schemas.messages import DriveCommand, Mode, SurfaceCommand
+from schemas.messages import Mode, SurfaceCommand
 from services.autopilot.mavlink.connection.line import Holder, Sender, VehicleConnection
+from uvf.maths.kinematics import Twist
 from uvf.mavlink import dialect as mav
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.wheels import drive_command
 
 FULL = 1000.0
 NOT_THERE = 2**15 - 1
@@ -135,12 +137,9 @@ class ManualControl:
         assert body is not None
         drive, linear = body.drive.kinematics, sticks.throttle * body.max_linear
         aside, turn = (sticks.roll, sticks.yaw) if drive.goes_sideways else (0.0, _part(sticks.roll + sticks.yaw))
-        self._line.commands["drive"] = DriveCommand(
-            timestamp=stamp(self._line.latest.sim_time),
-            linear=linear,
-            angular=-turn * (linear / drive.turning_radius if drive.turning_radius else body.max_angular),
-            lateral=-aside * body.max_linear,
-        )
+        fastest = linear / drive.turning_radius if drive.turning_radius else body.max_angular
+        twist = Twist(linear, -turn * fastest, -aside * body.max_linear)
+        self._line.commands["drive"] = drive_command(twist, stamp(self._line.latest.sim_time))
 
     def _fly(self, sticks: Sticks) -> None:
         """Full stick = the vehicle's limits."""

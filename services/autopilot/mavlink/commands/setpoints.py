@@ -15,7 +15,6 @@ from schemas.limits import PLACE
 from schemas.messages import (
     AttitudeSetpoint,
     CircleSetpoint,
-    DriveCommand,
     FlightSetpoint,
     GoalRequest,
     LineSetpoint,
@@ -33,6 +32,7 @@ from uvf.mavlink import dialect as mav
 from uvf.mavlink.names import frame_name
 from uvf.runtime.mavlink.limits import FASTEST, HIGHEST
 from uvf.runtime.messages.convert import array, stamp, yaw_of
+from uvf.runtime.messages.wheels import drive_command
 
 ALONE = 1.0  # s, wall: after which a target without another is no stream
 IGNORE_PLACE, IGNORE_Z, IGNORE_VELOCITY, IGNORE_VZ, IGNORE_RATE = 0b011, 0b100, 0b011_000, 0b100_000, 1 << 11
@@ -229,7 +229,7 @@ class Setpoints:
         if not self._holder.admits(sender):
             return
         now = stamp(self._line.latest.sim_time)
-        self._line.commands["drive"] = DriveCommand(timestamp=now, linear=twist.linear, angular=twist.angular, lateral=twist.lateral)
+        self._line.commands["drive"] = drive_command(twist, now)
 
     def _on_attitude(self, m: mav.MAVLink_set_attitude_target_message, sender: Sender) -> None:
         """Attitude with thrust; rates alone are not flown, the heading follows from the bank."""

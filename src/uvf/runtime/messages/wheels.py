@@ -1,11 +1,19 @@
-"""Wheel speeds and counts as messages: of vehicles with two sides by side, of those that drive sideways wheel by wheel."""
+"""Velocities, wheel speeds and counts as messages: of vehicles with two sides by side, of those that drive sideways wheel by wheel."""
 
 from collections.abc import Sequence
 
-from schemas.messages import WheelCommand, WheelTicks
+from google.protobuf.timestamp_pb2 import Timestamp
+
+from schemas.messages import DriveCommand, WheelCommand, WheelTicks
+from uvf.maths.kinematics import Twist
 from uvf.runtime.messages.convert import stamp
 
 SIDES = 2
+
+
+def drive_command(twist: Twist, timestamp: Timestamp | None = None) -> DriveCommand:
+    """A velocity of the body as a message; without a timestamp who sends it stamps it."""
+    return DriveCommand(timestamp=timestamp, linear=twist.linear, angular=twist.angular, lateral=twist.lateral)
 
 
 def wheel_command(t: float, speeds: Sequence[float], steering: float = 0.0) -> WheelCommand:

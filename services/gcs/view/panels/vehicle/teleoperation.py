@@ -74,7 +74,7 @@ def _state(v: VehicleModel) -> Html:
 
 
 def _key(key: str) -> Html:
-    way = SIDEWAYS[key] if key in SIDEWAYS else DIRECTIONS[key]
+    way = (DIRECTIONS | SIDEWAYS)[key]
     keys = f"{key} {ARROWS.get(key, '')}".strip()
     return html(
         "<button type='button' class='g-btn' data-keys='{}' data-steer='{:g} {:g} {:g}' aria-label='{}'>{}</button>",
