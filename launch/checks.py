@@ -22,6 +22,7 @@ from uvf.runtime.contract.instances import ServiceInstance
 SENSORS: dict[Topic[Any], str] = {
     topics.IMU: "imu",
     topics.SCAN: "lidar",
+    topics.OTHER_SCANS: "other_lidars",
     topics.WHEELS: "encoders",
     topics.GNSS: "gnss",
     topics.SONAR: "sonars",

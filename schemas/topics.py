@@ -114,6 +114,7 @@ SYSTEM_EVENTS = Topic(f"{_S}/state/events/<source>", m.Event, 0, _Q.EVENT, "what
 # sensors
 IMU = Topic(f"{_V}/sensor/imu", m.Imu, 100, _Q.STATE, "gyroscope, accelerometer, magnetometer")
 SCAN = Topic(f"{_V}/sensor/scan", m.LaserScan, 5, _Q.SENSOR, "2-D lidar; range 0 = no return; stamped at its first beam")
+OTHER_SCANS = Topic(f"{_V}/sensor/other_scans", m.LaserScan, 5, _Q.STATE, "further 2-D lidars, distinguished by frame")
 WHEELS = Topic(f"{_V}/sensor/wheels", m.WheelTicks, 50, _Q.STATE, "wheel encoders")
 GNSS = Topic(f"{_V}/sensor/gnss", m.Gnss, 5, _Q.STATE, "satellite position and velocity")
 AIR_DATA = Topic(f"{_V}/sensor/air_data", m.AirData, 50, _Q.STATE, "static and differential pressure")

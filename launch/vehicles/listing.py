@@ -64,7 +64,8 @@ def _ground_rows(ground: GroundBody) -> Iterator[tuple[str, str]]:
 def _fitted(file: VehicleFile) -> list[str]:
     single = ("lidar", "imu", "encoders", "gnss", "air_data", "camera", "chase", "gimbal")
     names = [kind for kind in single if getattr(file.sensors, kind) is not None]
-    lists = [f"{len(found)} {kind}" for kind in ("sonars", "rangefinders", "bumpers") if (found := getattr(file.sensors, kind))]
+    several = ("other_lidars", "sonars", "rangefinders", "bumpers")
+    lists = [f"{len(found)} {kind.replace('_', ' ')}" for kind in several if (found := getattr(file.sensors, kind))]
     return [*names, *lists]
 
 

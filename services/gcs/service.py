@@ -143,6 +143,7 @@ class GroundStation(Service):
         progress: dict[str, MissionProgress] = each_vehicle(topics.PROGRESS)
         fence: dict[str, Fence] = each_vehicle(topics.FENCE)
         scan: dict[str, LaserScan] = each_vehicle(topics.SCAN)
+        other_scans: dict[str, list[LaserScan]] = each_vehicle(every(topics.OTHER_SCANS))
         image: dict[str, CompressedImage] = each_vehicle(topics.IMAGE)
         chase: dict[str, CompressedImage] = each_vehicle(topics.VIEW.by("chase"))
         gimbal: dict[str, CompressedImage] = each_vehicle(topics.VIEW.by("gimbal"))
@@ -224,6 +225,7 @@ class GroundStation(Service):
         self._model.tasks = now.tasks
         self._hear_others(t, now.external, now.stop, (now.objects, now.aircraft), now.truth)
         self._keep(t, now, newest)
+        self._model.hear_other_scans(now.other_scans)
         return self._act(t, newest, now.events, [one for name in self.calls for one in getattr(now, name)])
 
     def _hear_system(self, t: float, clock: Clock | None, processes: Sequence[Processes], health: Sequence[Health]) -> None:

@@ -6,7 +6,7 @@ from services.planner.obstacle_sensors import ObstacleSensors
 from services.planner.params import PlannerParams
 from services.planner.planned_vehicle import PlannedVehicle
 from services.planner.planner_service import PlannerService
-from services.planner.scan_placing import ScanPlacer
+from services.planner.scan_placing import PlacedLidar, ScanPlacer
 from services.planner.tracker_service import FARTHEST, TrackerParams, TrackerService
 from uvf.maths.se2 import Pose2
 from uvf.models.scenario import MissionVehicle, Scenario
@@ -38,12 +38,12 @@ def build(site: Scenario) -> list[ServiceInstance]:
 
 
 def _hosts(member: MissionVehicle) -> list[ServiceInstance]:
-    start, body, lidar = member.entry.start, member.file.ground, member.file.sensors.lidar
-    if body is None or lidar is None:
+    start, body, sensors = member.entry.start, member.file.ground, member.file.sensors
+    if body is None or sensors.lidar is None:
         raise BadInput(f"{member.folder / 'vehicle.yaml'}: the planner needs 'ground:' and sensors: lidar")
     world_from_map = Pose2(start.x, start.y, start.yaw)
     model = load_urdf(member.folder / body.urdf)
-    footprint, top = _footprint(model, body), max(highest(model), lidar.mount.xyz[2])
+    footprint, top = _footprint(model, body), max(highest(model), *(lidar.mount.xyz[2] for lidar in sensors.lidars))
     planner, tracker = member.params("planner", PlannerParams), member.params("tracker", TrackerParams)
     speed, tightest = min(tracker.speed, body.max_linear), body.drive.kinematics.turning_radius
     if tightest and tracker.local_planner not in STEERS:
@@ -53,8 +53,9 @@ def _hosts(member: MissionVehicle) -> list[ServiceInstance]:
         )
 
     def sensors_of() -> ObstacleSensors:
-        placer = ScanPlacer(base_from_sensor(lidar.mount), sweeping_of(lidar), FARTHEST)
-        return ObstacleSensors(placer, footprint, member.file.sensors, top)
+        lidars = {f"{member.name}/{each.frame}": PlacedLidar(base_from_sensor(each.mount), sweeping_of(each)) for each in sensors.lidars}
+        placer = ScanPlacer(lidars, FARTHEST)
+        return ObstacleSensors(placer, footprint, sensors, top)
 
     def planner_service() -> PlannerService:
         vehicle = PlannedVehicle(footprint, sensors_of(), speed, member.entry.job.explore, member.name, tightest)

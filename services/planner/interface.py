@@ -39,6 +39,7 @@ class Inputs(Reads):
     pose: list[PoseInFrame] = every(topics.POSE)
     map: Grid = topic(topics.MAP)
     scan: LaserScan | None = optional(topics.SCAN)
+    other_scans: list[LaserScan] = optional(every(topics.OTHER_SCANS))
     depth: list[CompressedImage] = optional(every(topics.DEPTH))
     info: CameraCalibration | None = optional(topics.CAMERA_INFO)
     sonar: list[Range] = optional(every(topics.SONAR))
@@ -63,6 +64,11 @@ class Inputs(Reads):
     cancel: list[CancelRequest] = request(topics.CANCEL)
     preview: list[PreviewRequest] = request(topics.PREVIEW)
     set_mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
+
+    @property
+    def scans(self) -> list[LaserScan]:
+        """Of all lidars."""
+        return [*([self.scan] if self.scan is not None else []), *self.other_scans]
 
 
 class Outputs(Writes):

@@ -1,4 +1,4 @@
-"""All that one vehicle sees and feels obstacles with: its lidar, and others for what that does not see.
+"""All that one vehicle sees and feels obstacles with: its lidars, and others for what that does not see.
 
 These are depth camera, sonars, bumpers, and range finders that look down.
 """
@@ -33,7 +33,7 @@ WAITING_MOST = 32
 
 
 class OtherReadings(NamedTuple):
-    """What has come from sensors other than the lidar."""
+    """What has come from sensors other than the lidars."""
 
     depth: list[CompressedImage]
     info: CameraCalibration | None
@@ -58,12 +58,13 @@ class ObstacleSensors:
         self._sonars = {sonar.frame: sonar for sonar in sensors.sonars}
         self._edges = EdgeSense(sensors.rangefinders)
         self._bumper = BumpSense(footprint, {b.name: (b.angle_min, b.angle_max) for b in sensors.bumpers})
-        self._scan: PlacedScan | None = None
+        self._scans: dict[tuple[float, float], PlacedScan] = {}
+        """The last one of each lidar, by where it sits."""
         self._waiting: deque[tuple[float, str, GroundSight]] = deque(maxlen=WAITING_MOST)
 
     def see(self, scan: PlacedScan) -> None:
-        """What the lidar has seen explains what a sonar hears."""
-        self._scan = scan
+        """What a lidar has seen explains what a sonar hears."""
+        self._scans[scan.eye] = scan
 
     def take(self, age: float, readings: OtherReadings, hidden: HiddenObstacles) -> None:
         """Puts what has been seen among the hidden obstacles, whose lifetime goes by ``age``."""
@@ -110,6 +111,6 @@ class ObstacleSensors:
             return
         (x, y, _), (ahead, left, _) = sonar.mount.xyz, rotate(from_euler(*sonar.mount.rpy), np.eye(3)[0]).tolist()
         sight = cone_sight((x, y), atan2(left, ahead), sonar.fov, (reading.range, min(sonar.range_max, SONAR_REACH)))
-        if self._scan is not None:
-            sight = unexplained(sight, self._scan.points[self._scan.ranges > 0.0])
+        if self._scans:
+            sight = unexplained(sight, np.concatenate([s.points[s.ranges > 0.0] for s in self._scans.values()]))
         self._waiting.append((seconds(reading.timestamp), sonar.frame, sight))

@@ -103,7 +103,8 @@ class PlannerService(Service):
         team = team_map(self._vehicle.name, now.team_place, now.team_map)
         if fault := self._ground.share(now.shared, TerrainLimits(self.params.max_step, self.params.max_slope), team):
             self._tell(t, "the map of another vehicle is left out", fault, Event.WARNING)
-        changed = self._ground.look(t, now.map, now.scan, OtherReadings(now.depth, now.info, now.sonar, now.contact, now.range))
+        readings = OtherReadings(now.depth, now.info, now.sonar, now.contact, now.range)
+        changed = self._ground.look(t, now.map, now.scans, readings)
         self._team.hear(now.team, now.team_nav, now.team_path)
         self._book.team = self._team.places
         if self._ended_at is not None and t - self._ended_at >= self.params.wait_at_goal:

@@ -1,5 +1,6 @@
 """What a planner knows of its vehicle's ground: map, masks, and what the sensors see that the map does not show."""
 
+from collections.abc import Sequence
 from math import inf
 
 import numpy as np
@@ -69,8 +70,8 @@ class PlanningGround:
         news, self._told_fault = fault if fault != self._told_fault else "", fault
         return news
 
-    def look(self, t: float, grid: Grid, scan: LaserScan | None, readings: OtherReadings) -> bool:
-        """Takes map, scan and what else was seen; whether there is something new to plan by. Where the vehicle is must be known."""
+    def look(self, t: float, grid: Grid, scans: Sequence[LaserScan], readings: OtherReadings) -> bool:
+        """Takes map, scans and what else was seen; whether there is something new to plan by. Where the vehicle is must be known."""
         assert self.here is not None
         here = self.here[:2]
         taken_at, new = seconds(grid.timestamp), False
@@ -81,7 +82,9 @@ class PlanningGround:
         if self._sensors.bump is not None:
             self._hidden.bump(t, self._sensors.bump)
         placer = self._sensors.placer
-        if scan is not None and (seen := placer.place(scan)) is not None:
+        for scan in scans:
+            if (seen := placer.place(scan)) is None:
+                continue
             self._sensors.see(seen)
             self._layer.recentre(here)
             eye = transform(seen.pose, np.array((seen.eye,)))[0]

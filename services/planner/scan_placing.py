@@ -1,7 +1,9 @@
 """Where the beams of a lidar end about the vehicle, each seen from where the vehicle was when it was measured."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import hypot
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,22 +34,35 @@ class PlacedScan:
     """(n, 2) [m], ends of the beams in their order; those without return end at the farthest."""
     ranges: Floats
     """(n,) [m], 0 = no return."""
+    is_of_first: bool
+    """Whether it is of the first lidar, by whose scans what moves is followed."""
+
+
+class PlacedLidar(NamedTuple):
+    """Where a lidar sits, and how it sweeps."""
+
+    base_from_lidar: Transform
+    sweeping: Sweeping
 
 
 class ScanPlacer:
     """One vehicle's; poses are in one frame, whichever."""
 
-    def __init__(self, base_from_lidar: Transform, sweeping: Sweeping, farthest: float) -> None:
-        """farthest: m, at which beams without return end."""
-        self._base_from_lidar, self._sweeping, self.farthest = base_from_lidar, sweeping, farthest
+    def __init__(self, lidars: Mapping[str, PlacedLidar], farthest: float) -> None:
+        """lidars: by the frames that their scans name, the first one first; farthest: m, at which beams without return end."""
+        self._lidars, self.farthest = lidars, farthest
         self._history = PoseHistory(HISTORY)
-        self.t = -np.inf
-        """Time [s] of the last scan that was placed."""
+        self._placed_at = dict.fromkeys(lidars, -np.inf)
+
+    @property
+    def t(self) -> float:
+        """Time [s] of the last scan that was placed, of the lidar of which this is longest ago: from then on there is a blind side."""
+        return min(self._placed_at.values())
 
     @property
     def offset(self) -> float:
-        """Distance [m] from the vehicle's centre to the lidar, in the plane."""
-        return hypot(*self._base_from_lidar.translation[:2].tolist())
+        """Distance [m] from the vehicle's centre to the nearest lidar, in the plane."""
+        return min(hypot(*lidar.base_from_lidar.translation[:2].tolist()) for lidar in self._lidars.values())
 
     def move(self, t: float, pose: Pose2) -> None:
         """The vehicle was at ``pose`` at ``t`` [s]."""
@@ -71,23 +86,25 @@ class ScanPlacer:
         return x / LATELY, turned / LATELY
 
     def place(self, scan: LaserScan) -> PlacedScan | None:
-        """The scan, if it is newer than the last one and the poses reach to its end."""
-        taken_at = self._sweeping.end(seconds(scan.timestamp))
+        """The scan, if it is newer than the last one of this lidar and the poses reach to its end."""
+        if (lidar := self._lidars.get(scan.frame_id)) is None:
+            return None
+        taken_at = lidar.sweeping.end(seconds(scan.timestamp))
         pose = self._history.at(taken_at)
-        if taken_at <= self.t or pose is None:
+        if taken_at <= self._placed_at[scan.frame_id] or pose is None:
             return None
         ranges, rays = scan_rays(scan)
         ranges = np.where((ranges > 0.0) & (ranges < MOST), ranges, 0.0)
         ends = np.where(ranges > 0.0, ranges, self.farthest)[:, None] * rays
         base_from_frame, points = inverse(pose), np.empty_like(ends)
-        for at, beams in self._sweeping.parts(len(ranges), seconds(scan.timestamp)):
+        for at, beams in lidar.sweeping.parts(len(ranges), seconds(scan.timestamp)):
             if (frame_from_base := self._history.at(at)) is None:
                 return None
-            seen = transform(frame_from_base, from_above(self._base_from_lidar, ends[beams]))
+            seen = transform(frame_from_base, from_above(lidar.base_from_lidar, ends[beams]))
             points[beams] = transform(base_from_frame, seen)
-        self.t = taken_at
-        x, y, _ = self._base_from_lidar.translation.tolist()
-        return PlacedScan(taken_at, pose, (x, y), *_thinned(points, ranges))
+        self._placed_at[scan.frame_id] = taken_at
+        x, y, _ = lidar.base_from_lidar.translation.tolist()
+        return PlacedScan(taken_at, pose, (x, y), *_thinned(points, ranges), scan.frame_id == next(iter(self._lidars)))
 
 
 def _thinned(points: Floats, ranges: Floats) -> tuple[Floats, Floats]:

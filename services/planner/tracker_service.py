@@ -98,6 +98,7 @@ class TrackerService(Service):
         pose: list[PoseInFrame] = every(topics.POSE)
         odometry: Odometry | None = optional(topics.ODOMETRY)
         scan: LaserScan = topic(topics.SCAN)
+        other_scans: list[LaserScan] = optional(every(topics.OTHER_SCANS))
         depth: list[CompressedImage] = optional(every(topics.DEPTH))
         info: CameraCalibration | None = optional(topics.CAMERA_INFO)
         sonar: list[Range] = optional(every(topics.SONAR))
@@ -142,13 +143,15 @@ class TrackerService(Service):
         self._sensors.take(controller.age, OtherReadings(now.depth, now.info, now.sonar, now.contact, now.range), controller.hidden)
         if self._sensors.bump is not None:
             self._executor.draw_back(t, self._pose, self._sensors.bump)
-        if (seen := self._placer.place(now.scan)) is not None:
-            self._sensors.see(seen)
-            controller.see(seen.t, seen.pose, seen.eye, seen.points, seen.ranges)
+        seen = [placed for scan in (now.scan, *now.other_scans) if (placed := self._placer.place(scan)) is not None]
+        for placed in seen:
+            self._sensors.see(placed)
+            controller.see(placed.t, placed.pose, placed.eye, placed.points, placed.ranges, placed.is_of_first)
+        if seen:
             if (mask := self._keep_out.take(now.keep_out)) is not None:
                 controller.keep_out(mask.kept_out_near(self._pose[:2], KEEP_OUT_REACH))
             self._team.hear(now.team, now.team_nav, {})
-            self._heed_team(controller, transform(seen.pose, seen.points[seen.ranges > 0.0]))
+            self._heed_team(controller, np.concatenate([transform(s.pose, s.points[s.ranges > 0.0]) for s in seen]))
         if t - self._placer.t > SCAN_MAX_AGE:
             return self.stale(t, ("scan",))
         if now.odometry is not None:
@@ -158,7 +161,7 @@ class TrackerService(Service):
         return self.Outputs(
             drive=DriveCommand(timestamp=stamp(t), linear=self._velocity[0], angular=self._velocity[1]),
             report=report_message(t, report),
-            obstacles=_moving(seen.t, controller.moving) if seen is not None else None,
+            obstacles=_moving(seen[0].t, controller.moving) if seen else None,
             costs=self._costs(t, controller),
             events=[*self._felt(t), *(self._obstacle(t) if report.how in (Drive.STOPPED, Drive.NO_VALID_CONTROL) else [])],
         )

@@ -106,6 +106,7 @@ def rate_faults(sensors: Sensors, body: GroundBody, place: FileLocation) -> Iter
         sensor, most = getattr(sensors, kind), body.physics_hz if kind == "imu" else STEP_HZ
         if sensor is not None and sensor.hz > most:
             yield f"{place.at('sensors', kind, 'hz')}: {sensor.hz:g}; the simulator gives {most:g} at most"
-    for i, sonar in enumerate(sensors.sonars):
-        if sonar.hz > STEP_HZ:
-            yield f"{place.at('sensors', 'sonars', i, 'hz')}: {sonar.hz:g}; the simulator gives {STEP_HZ:g} at most"
+    for kind in ("other_lidars", "sonars", "rangefinders"):
+        for i, ranger in enumerate(getattr(sensors, kind)):
+            if ranger.hz > STEP_HZ:
+                yield f"{place.at('sensors', kind, i, 'hz')}: {ranger.hz:g}; the simulator gives {STEP_HZ:g} at most"

@@ -81,11 +81,15 @@ class Rig:
         self._joints_due = Due(topics.JOINTS.hz)
         self._battery_due = Due(topics.BATTERY.hz)
         self.charge = Charge(ground.battery, member.entry.start.charge) if ground.battery is not None else None
-        self._track: BodyTrack | None = None
-        """Of the body, for a lidar that takes its time."""
+        self._tracks: list[BodyTrack] = []
+        """Of the body, for lidars that take their time."""
         self._fitted = dict(self._fit())
         sonars, finders = member.file.sensors.sonars, member.file.sensors.rangefinders
-        self._rangers = {"sonar": [self._ranger("sonar", s) for s in sonars], "range": [self._ranger("range", f) for f in finders]}
+        self._rangers = {
+            "other_scans": [self._other_lidar(lidar) for lidar in member.file.sensors.other_lidars],
+            "sonar": [self._ranger("sonar", s) for s in sonars],
+            "range": [self._ranger("range", f) for f in finders],
+        }
 
     def _fit(self) -> Iterator[tuple[str, FittedSensor]]:
         """What there is one of, by output name."""
@@ -93,7 +97,7 @@ class Rig:
         if sensors.imu is not None:
             yield "imu", self._with_line(self._imu(sensors.imu), sensors.imu, "imu")
         if sensors.lidar is not None:
-            yield "scan", self._with_line(self._lidar(sensors.lidar), sensors.lidar, "lidar")
+            yield "scan", self._with_line(self._lidar(sensors.lidar, self._rng("lidar")), sensors.lidar, "lidar")
         if sensors.encoders is not None:
             yield "wheels", self._with_line(self._encoders(sensors.encoders), sensors.encoders, "encoders")
         if sensors.gnss is not None:
@@ -119,8 +123,8 @@ class Rig:
         A contact is kept until it has been published, so that a short one between two messages is not lost.
         """
         self._touches += moment.touches
-        if self._track is not None:
-            self._track.add(t, moment.body)
+        for track in self._tracks:
+            track.add(t, moment.body)
         found: dict[str, Value] = {}
         for output, sensor in self._fitted.items():
             message = sensor.step(t, moment)
@@ -166,11 +170,14 @@ class Rig:
     def _imu(self, imu: ImuSensor) -> Read:
         return partial(_read_imu, self._frame(imu.frame), ImuModel(imu, np.array(self._site.world.magnetic_field), self._rng("imu")))
 
-    def _lidar(self, lidar: Lidar) -> Read:
-        model = LidarModel(lidar, self._scene, self._rng("lidar"))
+    def _lidar(self, lidar: Lidar, rng: np.random.Generator) -> Read:
+        model = LidarModel(lidar, self._scene, rng)
         if lidar.sweep_time > 0.0:
-            self._track = model.track
+            self._tracks.append(model.track)
         return partial(_read_lidar, self._frame(lidar.frame), lidar, model)
+
+    def _other_lidar(self, lidar: Lidar) -> FittedSensor:
+        return self._with_line(self._lidar(lidar, self._rng("lidar", lidar.frame)), lidar, "lidar", lidar.frame)
 
     def _encoders(self, encoders: Encoders) -> Read:
         return partial(_read_encoders, encoders, self.ground.drive.channels)

@@ -101,6 +101,7 @@ class SimGround(Service):
 
         imu: dict[str, Imu] | None = topic(topics.IMU)
         scan: dict[str, LaserScan] | None = topic(topics.SCAN)
+        other_scans: dict[str, LaserScan] | None = topic(topics.OTHER_SCANS)
         wheels: dict[str, WheelTicks] | None = topic(topics.WHEELS)
         gnss: dict[str, Gnss] | None = topic(topics.GNSS)
         sonar: dict[str, Range] | None = topic(topics.SONAR)

@@ -61,7 +61,7 @@ def _hosts(site: Scenario, member: MissionVehicle, warm: set[str]) -> list[Servi
     left = _left(site, member, mapping, maps.continues) if maps is not None and maps.continues is not None else None
 
     def make() -> MappingService:
-        return MappingService(member.name, lidar, world_from_map, mapping, lambda name: _method(member, name)(), left)
+        return MappingService(member.name, sensors.lidars, world_from_map, mapping, lambda name: _method(member, name)(), left)
 
     return [_odometry(site, member), ServiceInstance(MappingService, make, member.name)]
 

@@ -93,7 +93,7 @@ class LocalizationService(PlacingService):
         )
         try:
             self._odom_from_base = planar(now.frames.lookup(self._frame("odom"), self._frame("base_footprint")))
-            if self._localizer is not None and (reading := self._reading(now.scan, now.frames)) is not None:
+            if self._localizer is not None and (reading := self._scans.read(now.scan, now.frames)) is not None:
                 out.fix, told = self._look(t, self._localizer, reading)
                 out.particles = self._particles(t, self._localizer)
                 events += told

@@ -1,6 +1,6 @@
 """Lidar scans and frames -> the map, and where the odometry frame lies in it."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
@@ -15,13 +15,14 @@ from schemas import topics
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MappingRequest, MapSession, Odometry, Reply
 from services.slam.odometry.messages import rate_sigmas
 from services.slam.placing_service import PlacingService, fix_message
+from services.slam.scan_reader import OtherScans
 from services.slam.warm_up import warm_up
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
 from uvf.models.keys import key, plain
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.declaration import Reads, Writes, frames, optional, replies, request, topic
+from uvf.runtime.contract.declaration import Reads, Writes, every, frames, optional, replies, request, topic
 from uvf.runtime.messages.convert import occupancy_grid, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.slam.maps.session import MappingSession
@@ -60,6 +61,7 @@ class MappingService(PlacingService):
         """Scans, frames, and how sure the odometry is."""
 
         scan: LaserScan = topic(topics.SCAN)
+        other_scans: list[LaserScan] = optional(every(topics.OTHER_SCANS))
         frames: FrameBuffer = frames()
         odometry: Odometry | None = optional(topics.ODOMETRY)
         mapping: list[MappingRequest] = request(topics.MAPPING)
@@ -87,15 +89,18 @@ class MappingService(PlacingService):
     def __init__(
         self,
         vehicle: str,
-        lidar: Lidar,
+        lidars: Sequence[Lidar],
         world_from_map: Pose2,
         params: MappingParams,
         make: MakeMethod,
         left: MappingSession | None = None,
     ) -> None:
-        """make: makes a method by its name; left: a session to go on with, in the vehicle's map frame."""
+        """lidars: the one by which the vehicle is placed, then those from which the map is drawn as well.
+
+        make: makes a method by its name; left: a session to go on with, in the vehicle's map frame."""
         self.params = params
-        super().__init__(vehicle, lidar, world_from_map)
+        super().__init__(vehicle, lidars[0], world_from_map)
+        self._others = OtherScans(vehicle, lidars[1:])
         self._make = make
         self._method = make(params.method)
         self._next: tuple[str, Future[SlamMethod]] | None = None
@@ -116,7 +121,9 @@ class MappingService(PlacingService):
         events = self._begin_another(t)
         try:
             self._odom_from_base = planar(now.frames.lookup(self._frame("odom"), self._frame("base_footprint")))
-            if (reading := self._reading(now.scan, now.frames)) is not None:
+            self._others.hear(now.other_scans, now.frames)
+            if (reading := self._scans.read(now.scan, now.frames)) is not None:
+                reading = replace(reading, others=self._others.about(reading.t))
                 if now.odometry is not None:
                     reading = replace(reading, rate_sigmas=rate_sigmas(now.odometry))
                 out.fix, told = (None, []) if self._held else self._look(t, reading)

@@ -5,23 +5,17 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import Event, FrameTransform, LaserScan, MapFix
+from schemas.messages import Event, FrameTransform, MapFix
+from services.slam.scan_reader import ScanReader
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
-from uvf.maths.se3 import planar
 from uvf.models.vehicle.sensors import Lidar
 from uvf.runtime.contract.service import Service
-from uvf.runtime.messages.convert import planar_frame, seconds, stamp
-from uvf.runtime.messages.frames import FrameBuffer
-from uvf.runtime.messages.readings.scans import Shape, beams_of, is_usable, sees_nothing, shape_of
-from uvf.sensors.fitted import sweeping_of
+from uvf.runtime.messages.convert import planar_frame, stamp
 from uvf.slam.correction import toward
-from uvf.slam.deskew import straightened
 from uvf.slam.placing_params import PlacingParams
-from uvf.slam.reading import Beams, Reading
 
 Floats = NDArray[np.float64]
 
-MOST_SHAPES = 16  # of scans, that are kept; more come from a lidar whose angles are never the same
 PATIENCE = 2.0  # s without a scan that has a place, until this is told
 
 
@@ -36,41 +30,11 @@ class PlacingService(Service):
 
     def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2) -> None:
         self._vehicle = vehicle
-        self._lidar, self._sweeping = lidar, sweeping_of(lidar)
+        self._scans = ScanReader(vehicle, lidar)
         self._world_from_map = world_from_map
-        self._beams: dict[Shape, Beams] = {}
         self._map_from_odom = self._published = self._odom_from_base = IDENTITY
-        self._scan_time = -1.0
-        self._ranges = np.zeros(0)
         self._placeless_since: float | None = None
         self._told = False
-
-    def _reading(self, scan: LaserScan, frames: FrameBuffer) -> Reading | None:
-        """A new scan from where the lidar was at its last beam; None for one that has been seen. Raises FrameError.
-
-        Noise makes each scan another: one that is equal comes from a lidar that is frozen, whatever its stamp says, unless nothing
-        came back at all.
-        """
-        taken_at = seconds(scan.timestamp)
-        if taken_at <= self._scan_time or not is_usable(scan):
-            return None
-        if shape_of(scan) not in self._beams:
-            if len(self._beams) == MOST_SHAPES:
-                self._beams.clear()
-            base_from_lidar = frames.lookup(self._frame("base_footprint"), scan.frame_id)
-            limits = (self._lidar.range_min, self._lidar.range_max)
-            self._beams[shape_of(scan)] = beams_of(scan, base_from_lidar, limits, self._sweeping)
-        odom, base = self._frame("odom"), self._frame("base_footprint")
-        ranges = self._sweeping.in_order(np.array(scan.ranges))
-        reading = straightened(
-            ranges,
-            self._beams[shape_of(scan)],
-            taken_at,
-            lambda times: np.array([planar(frames.lookup(odom, base, t)) for t in times.tolist()]),
-        )
-        self._scan_time = taken_at
-        frozen, self._ranges = np.array_equal(ranges, self._ranges) and not sees_nothing(scan), ranges
-        return None if frozen else reading
 
     def _wait(self, t: float, reason: str) -> list[Event]:
         """A scan may be ahead of the frames for a moment; when it lasts, a person has to know why there is no map."""

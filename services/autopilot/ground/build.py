@@ -12,7 +12,6 @@ from uvf.runtime.messages.plans.fences import fence_message, fencing
 from uvf.runtime.messages.plans.mission_files import item_from_file
 from uvf.sensors.cliffs import floor_sights
 from uvf.sensors.fitted import sweeping_of
-from uvf.sensors.sweeping import AT_ONCE
 
 
 def hosts(site: Scenario) -> list[ServiceInstance]:
@@ -31,11 +30,11 @@ def _host(member: MissionVehicle, site: Scenario) -> ServiceInstance:
     fence = fence_message(member.entry.fence, f"{site.mission_path}: {member.name}: fence")
     if outside := fences.refusal(items, fencing(fence), body.radius):
         raise BadInput(f"{site.mission_path}: {member.name}: fence: {outside}")
-    imu, lidar = member.file.sensors.imu, member.file.sensors.lidar
+    sensors = member.file.sensors
     looks = SensorLooks(
-        imu.mount.rpy if imu is not None else (0.0, 0.0, 0.0),
-        sweeping_of(lidar) if lidar is not None else AT_ONCE,
-        floor_sights(member.file.sensors.rangefinders),
+        sensors.imu.mount.rpy if sensors.imu is not None else (0.0, 0.0, 0.0),
+        {f"{member.name}/{lidar.frame}": sweeping_of(lidar) for lidar in sensors.lidars},
+        floor_sights(sensors.rangefinders),
     )
     armed = (job.explore or bool(items)) if job.armed is None else job.armed
     begins = armed and (job.explore or bool(items))

@@ -50,6 +50,7 @@ class Inputs(Reads):
     imu: list[Imu] = optional(every(topics.IMU))
     ticks: WheelTicks | None = optional(topics.WHEELS)
     scan: LaserScan | None = optional(topics.SCAN)
+    other_scans: list[LaserScan] = optional(every(topics.OTHER_SCANS))
     correction: FrameTransform | None = optional(topics.TF_MAP)
     battery: Battery | None = optional(topics.BATTERY)
     range: list[Range] = optional(every(topics.RANGE))

@@ -20,7 +20,7 @@ from uvf.models.mission.fence import Fencing, near_home
 from uvf.models.vehicle.file import GroundBody
 from uvf.runtime.messages.plans.fences import fence_fault, fencing
 from uvf.sensors.cliffs import FloorSight
-from uvf.sensors.sweeping import AT_ONCE, Sweeping
+from uvf.sensors.sweeping import Sweeping
 
 BY_ITSELF = (Mode.MODE_MISSION, Mode.MODE_RETURN)
 
@@ -35,7 +35,7 @@ class GroundSensorInputs:
     link: Link | None = None
     imu: list[Imu] = field(default_factory=list)
     wheels: WheelTicks | None = None
-    scan: LaserScan | None = None
+    scans: list[LaserScan] = field(default_factory=list)
     correction: FrameTransform | None = None
     battery: Battery | None = None
     ranges: list[Range] = field(default_factory=list)
@@ -55,10 +55,10 @@ class GroundActivity:
 
 
 class SensorLooks(NamedTuple):
-    """How the sensors look. imu_rpy: of its mount; sweeping: of the lidar; floor: sights of it by the range finders' frames."""
+    """How the sensors look. imu_rpy: of its mount; sweeping: of the lidars, floor: sights of it by the range finders, by their frames."""
 
     imu_rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    sweeping: Sweeping = AT_ONCE
+    sweeping: Mapping[str, Sweeping] = MappingProxyType({})
     floor: Mapping[str, FloorSight] = MappingProxyType({})
 
 
@@ -138,7 +138,7 @@ class GroundFailsafeMonitor:
         self._wheels.step(sensed.wheels)
         self._grip.step(doing.asked, sensed.speed, dt)
         self._tilt.step(sensed.imu, dt)
-        self._sight.step(t, sensed.scan, sensed.correction, self._wheels.travelled)
+        self._sight.step(t, sensed.scans, sensed.correction, self._wheels.travelled)
         self._edges.step(t, sensed.ranges)
 
     def _known(self, t: float, doing: GroundActivity, params: GroundAutopilotParams) -> GroundFailsafeInputs:

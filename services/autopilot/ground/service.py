@@ -107,9 +107,8 @@ class GroundAutopilot(Service):
         self._handle_stop_all(t, now.stop)
         self._here = place(now.pose, yaw_of(now.pose.pose.orientation)) if now.pose is not None else None
         speed = now.odometry.linear_velocity.x if now.odometry is not None else None
-        self._watch(
-            t, GroundSensorInputs(self._here, speed, now.link, now.imu, now.ticks, now.scan, now.correction, now.battery, now.range)
-        )
+        scans = [*([now.scan] if now.scan is not None else []), *now.other_scans]
+        self._watch(t, GroundSensorInputs(self._here, speed, now.link, now.imu, now.ticks, scans, now.correction, now.battery, now.range))
         out = self.Outputs()
         out.arm = [self._arm(t, r) for r in now.arm]
         out.set_mode = [self._set_mode(t, r) for r in now.set_mode]

@@ -10,6 +10,7 @@ from schemas.messages import (
     Clock,
     Event,
     ExternalVehicle,
+    LaserScan,
     NavState,
     Odometry,
     SimObject,
@@ -142,10 +143,19 @@ class Model:
             if what in ("nav", "pose") and vehicle.place is not None:
                 vehicle.track.add(vehicle.place.position)
             elif what == "scan":
-                vehicle.scan_points = scan_in_world(vehicle)
+                vehicle.scan_points = scan_in_world(vehicle, vehicle.scan, vehicle.member.file.sensors.lidar)
             elif what == "grid" and not vehicle.flies:
                 floor = self._floors.get(name)
                 vehicle.mapped = floor.share(vehicle.grid) if floor and vehicle.grid and vehicle.grid.column_count else None
+
+    def hear_other_scans(self, by_vehicle: Mapping[str, Sequence[LaserScan]]) -> None:
+        """Takes the scans of the vehicles' further lidars."""
+        for name, scans in by_vehicle.items():
+            vehicle = self.vehicles.get(name)
+            lidars = {f"{name}/{lidar.frame}": lidar for lidar in vehicle.member.file.sensors.other_lidars} if vehicle is not None else {}
+            for scan in scans:
+                if vehicle is not None and scan.frame_id in lidars:
+                    vehicle.other_scan_points[scan.frame_id] = scan_in_world(vehicle, scan, lidars[scan.frame_id])
 
     def hear_clock(self, t: float, clock: Clock | None) -> None:
         """Takes the clock message at ``t`` [s, wall]; a new epoch clears tracks and goals."""

@@ -39,6 +39,7 @@ from services.gcs.state.tracks import VehicleTrack
 from uvf.maths.rotations import matrix
 from uvf.maths.se3 import apply
 from uvf.models.scenario import MissionVehicle
+from uvf.models.vehicle.sensors import Lidar
 from uvf.runtime.messages.convert import array, scan_points, wxyz
 from uvf.sensors.fitted import base_from_sensor
 
@@ -117,6 +118,8 @@ class VehicleModel:
     """Field -> when its newest message came [s, wall]."""
     scan_points: Floats | None = None
     """(n, 3) m, world: the newest scan as seen from where the vehicle was when it came."""
+    other_scan_points: dict[str, Floats | None] = field(default_factory=dict)
+    """The same of further lidars, by their frames."""
     mapped: float | None = None
     """0..1, the report's ``mapped_floor`` of the newest map."""
     order: Order | None = None
@@ -199,9 +202,9 @@ def track_of(member: MissionVehicle) -> VehicleTrack:
     return VehicleTrack(spacing=2.0, jump=60.0) if member.file.kind == "fixed_wing" else VehicleTrack(spacing=0.04, jump=0.6)
 
 
-def scan_in_world(vehicle: VehicleModel) -> Floats | None:
-    """Points (n, 3) [m, world] of the newest scan; None while the vehicle's pose or its lidar is unknown."""
-    scan, place, lidar = vehicle.scan, vehicle.place, vehicle.member.file.sensors.lidar
+def scan_in_world(vehicle: VehicleModel, scan: LaserScan | None, lidar: Lidar | None) -> Floats | None:
+    """Points (n, 3) [m, world] of a lidar's scan; None while the vehicle's pose or its lidar is unknown."""
+    place = vehicle.place
     if scan is None or place is None or lidar is None or not scan.ranges:
         return None
     flat = scan_points(scan)

@@ -62,6 +62,7 @@ class OctreeService(Service):
         depth: list[CompressedImage] = optional(every(topics.DEPTH))
         info: CameraCalibration | None = optional(topics.CAMERA_INFO)
         scan: list[LaserScan] = optional(every(topics.SCAN))
+        other_scans: list[LaserScan] = optional(every(topics.OTHER_SCANS))
         frames: FrameBuffer = frames()
         save: list[OctreeSaveRequest] = request(topics.SAVE_OCTREE)
 
@@ -86,6 +87,7 @@ class OctreeService(Service):
         """keep: writes a file under a name and tells where; raises BadInput."""
         self.params = params
         self._sensors = sensors
+        self._lidars = {lidar.frame: lidar for lidar in sensors.lidars}
         self._keep = keep
         self._octree = Octree(params.resolution)
         self._waiting = WaitingBeams()
@@ -95,7 +97,7 @@ class OctreeService(Service):
 
     def step(self, t: float, now: Inputs) -> Outputs:
         """One cycle at ``t`` [s, simulation]: inserts what has a place by now, and publishes the map when it is due."""
-        events = [*self._take(t, now.depth, now.info, now.scan), *self._place(t, now.frames)]
+        events = [*self._take(t, now.depth, now.info, [*now.scan, *now.other_scans]), *self._place(t, now.frames)]
         out = self.Outputs(events=events)
         if self._changed and t - self._published_at >= self.params.map_period - 1e-9:
             self._changed, self._published_at = False, t
@@ -128,8 +130,8 @@ class OctreeService(Service):
                     events += self._tell(t, "a depth picture is left out", str(error))
                 else:
                     self._waiting.take([SweepSegment(seconds(picture.timestamp), slice(None))], picture.frame_id, beams)
-        if (lidar := self._sensors.lidar) is not None:
-            for sweep in scan:
+        for sweep in scan:
+            if (lidar := self._lidars.get(sweep.frame_id.rpartition("/")[2])) is not None:
                 beams = sweep_beams(sweep, min(self.params.lidar_reach, lidar.range_max))
                 self._waiting.take(sweeping_of(lidar).parts(len(sweep.ranges), seconds(sweep.timestamp)), sweep.frame_id, beams)
         return events

@@ -45,6 +45,8 @@ class Reading:
     beams: Beams
     odom_from_base: Pose2
     rate_sigmas: tuple[float, float] | None = None
+    others: "tuple[Reading, ...]" = ()
+    """Of the vehicle's other lidars, at about the same time: what the map is drawn from, too."""
 
     @property
     def returned(self) -> NDArray[np.bool_]:

@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +84,7 @@ class Synchronised:
         if not (self._shifts and self._t[0] <= taken <= self._t[-1]):
             return reading
         x, y, yaw = (float(np.interp(taken, self._t, column)) for column in self._poses.T)
-        return Reading(reading.t, reading.ranges, reading.beams, Pose2(x, y, yaw))
+        return replace(reading, odom_from_base=Pose2(x, y, yaw))
 
     def _learn(self, reading: Reading, estimate: SlamEstimate) -> None:
         """From the turn since the last sweep, if both have fitted."""

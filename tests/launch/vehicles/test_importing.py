@@ -119,7 +119,8 @@ def test_what_a_sensor_of_rays_is_follows_from_its_beams_and_where_they_go(tmp_p
     ]
     assert [(s.fov, s.range_max) for s in sensors.sonars] == [(pytest.approx(0.17), 0.2)]
     assert (sensors.lidar.frame, sensors.lidar.beams) == ("top_scan", 360)
-    assert any("a vehicle has one lidar; the others dropped" in line and "kerb_watch" in line and "rear_scan" in line for line in notes)
+    assert [(s.frame, s.beams, s.range_max) for s in sensors.other_lidars] == [("rear_scan", 100, 8.0)]
+    assert any("lidars that are not level dropped" in line and "kerb_watch" in line for line in notes)
 
 
 def test_a_pose_in_a_link_may_name_another_frame_of_the_model(tmp_path):

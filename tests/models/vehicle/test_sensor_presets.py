@@ -130,3 +130,16 @@ def test_limits_the_wrong_way_round_are_refused(sensors_of):
     assert "range_min: 5 m is not below range_max, 4 m" in refusal(sensors_of, sonars=[{**SONAR, "range_min": 5.0}])
     bumper = {"name": "front", "angle_min": 0.5, "angle_max": -0.5}
     assert "bumpers[0]: angle_min: 0.5 rad is not below angle_max" in refusal(sensors_of, bumpers=[bumper])
+
+
+LDS = {"preset": "lds01", "mount": {"xyz": [0, 0, 0.2]}}
+
+
+def test_further_lidars_take_presets_and_frames_of_their_own(sensors_of):
+    found = sensors_of(lidar=LDS, other_lidars=[{**LDS, "frame": "rear", "hz": 10.0}])
+    assert [(lidar.frame, lidar.beams, lidar.hz) for lidar in found.lidars] == [("lidar", 360, 5.0), ("rear", 360, 10.0)]
+    assert "other_lidars[0]: a second lidar with frame 'lidar'; give each a frame" in refusal(sensors_of, lidar=LDS, other_lidars=[LDS])
+    assert "other_lidars: there is no first one; give one of them as 'lidar'" in refusal(sensors_of, other_lidars=[LDS])
+    assert "other_lidars[0]: preset: no preset 'lds1'; did you mean 'lds01'?" in refusal(
+        sensors_of, lidar=LDS, other_lidars=[{**LDS, "preset": "lds1"}]
+    )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from schemas.messages import LaserScan, NavDirective, NavReport, NavStatus, Pose, PoseInFrame, PosesInFrame, Vector3
-from services.planner.scan_placing import ScanPlacer
+from services.planner.scan_placing import PlacedLidar, ScanPlacer
 from services.planner.tracker_service import TrackerParams, TrackerService
 from tests.runtime.stepping import stale, stepped
 from tests.services.autopilot.ground.test_service import BODY
@@ -195,7 +195,7 @@ def poses_until(end):
 
 def post_seen(sweeping, clockwise, end=1.02):
     """Bearings [rad] in the world at which its beams end, near as they are."""
-    placer = ScanPlacer(IDENTITY, sweeping, 4.0)
+    placer = ScanPlacer({"": PlacedLidar(IDENTITY, sweeping)}, 4.0)
     for message in poses_until(end):
         placer.move(seconds(message.timestamp), pose2_of(message.pose))
     seen = placer.place(swept_post(clockwise))
@@ -229,7 +229,7 @@ def test_a_slow_scan_is_as_old_as_its_last_beam():
 def test_of_more_beams_than_are_needed_the_nearest_of_neighbours_count():
     ranges = np.full(20_000, 3.0)
     ranges[777], ranges[5000:5100] = 0.7, 0.0
-    placer = ScanPlacer(IDENTITY, AT_ONCE, 4.0)
+    placer = ScanPlacer({"": PlacedLidar(IDENTITY, AT_ONCE)}, 4.0)
     placer.move(0.0, Pose2(0.0, 0.0, 0.0))
     placer.move(1.0, Pose2(0.0, 0.0, 0.0))
     seen = placer.place(LaserScan(timestamp=stamp(1.0), start_angle=-3.0, end_angle=3.0, ranges=ranges.tolist()))

@@ -143,3 +143,15 @@ def test_a_vehicle_is_charged_while_it_stands_on_a_charger(tmp_path, charger, sp
     for n in range(1, 301):
         rig.read(n / 100, Moment(body))
     assert (rig.charge.remaining > 0.5) is rises
+
+
+def test_further_lidars_speak_beside_the_first_which_does_not_hear_of_them(stand):
+    plain = stand()
+    rear = lambda s: msgspec.structs.replace(s.lidar, mount=Mount((-0.1, 0.0, 0.1), (0.0, 0.0, np.pi)), frame="rear")  # noqa: E731
+    slow = lambda s: msgspec.structs.replace(s.lidar, frame="slow", sweep_time=0.1)  # noqa: E731
+    said = stand(lambda s: {"other_lidars": [rear(s), slow(s)]})
+    assert said["scan"] == plain["scan"]
+    (t, (seen, swept)), *_ = said["other_scans"]
+    assert [seen.frame_id, swept.frame_id] == ["burger/rear", "burger/slow"]
+    assert seen.ranges[0] == pytest.approx(said["scan"][0][1].ranges[180], abs=0.2)
+    assert t - seconds(swept.timestamp) == pytest.approx(0.1)

@@ -129,7 +129,7 @@ def frames_with(poses):
 
 
 def mapping(**params):
-    return MappingService("v", LIDAR, START, MappingParams(**params), lambda name: make_method(name, method_params(name, {}, "test")))
+    return MappingService("v", [LIDAR], START, MappingParams(**params), lambda name: make_method(name, method_params(name, {}, "test")))
 
 
 def map_for(seconds, pose_at, odometry_of, asked=None, service=None):

@@ -54,7 +54,7 @@ def frames_until(end):
 
 def service(lidar):
     method = Kept()
-    return MappingService("v", lidar, START, MappingParams(), lambda name: method), method
+    return MappingService("v", [lidar], START, MappingParams(), lambda name: method), method
 
 
 def off_the_surfaces(reading):

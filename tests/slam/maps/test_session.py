@@ -97,7 +97,7 @@ def with_value(place, value):
 @pytest.mark.parametrize(
     ("changes", "part"),
     [
-        ({"header": {"version": 2}}, "version 2; this is read up to version 1: use a newer uvf"),
+        ({"header": {"version": 3}}, "version 3; this is read up to version 2: use a newer uvf"),
         ({"header": {"format": "something"}}, "not a session of uvf slam"),
         ({"poses": lambda a: a[:3]}, r"poses has shape \(3, 3\), where \(7, 3\) belongs"),
         ({"stamps": lambda a: a[0]}, "stamps has shape"),

@@ -44,10 +44,10 @@ class WayLayers:
         }
 
     def _scan(self, v: VehicleModel) -> Nodes:
-        points = v.scan_points
-        if points is None or len(points) == 0:
+        seen = [points for points in (v.scan_points, *v.other_scan_points.values()) if points is not None and len(points)]
+        if not seen:
             return {}
-        return self._nodes.make(f"scan {v.name}", v.scan, lambda: Points(points, SCAN, 0.035))
+        return self._nodes.make(f"scan {v.name}", [id(points) for points in seen], lambda: Points(np.concatenate(seen), SCAN, 0.035))
 
     def _path(self, v: VehicleModel) -> Nodes:
         path = v.path

@@ -22,7 +22,7 @@ FARTHEST = 300.0  # m; scanners for surveys outdoors reach it
 OWN = 2.0  # m from the lidar, within which its own vehicle is
 SHUT = 0.95  # of the beams, from which on a lidar that they keep from the world sees nothing
 NEEDED = {"lidar": "preset: lds01, mount: {xyz: [0, 0, 0.2]}", "encoders": "hz: 50, ticks_per_turn: 4096"}
-SPOKEN = {"sonars": "sonar", "rangefinders": "range finder"}
+SPOKEN = {"other_lidars": "lidar", "sonars": "sonar", "rangefinders": "range finder"}
 HOUSINGS = ("lidar", "laser", "scan", "hokuyo", "lds", "rplidar", "sick", "velodyne")
 
 Poses = Mapping[str, Transform]
@@ -47,12 +47,14 @@ def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: FileL
             yield f"{where}: {what}; to move the {SPOKEN.get(str(keys[0]), keys[0])}, {mend}"
         if (z := sensor.mount.xyz[2]) < -SUNK:
             yield f"{place.at(*keys, 'mount')}: z {z:.4g} m is below the floor, which is z = 0 of base_link; raise it"
-    if sensors.lidar is not None:
-        yield from _lidar_faults(sensors.lidar, place.at("lidar"))
-        met = _links_met(model, sensors.lidar, poses)
-        if len(met) >= SHUT * sensors.lidar.beams:
+    for keys, lidar in mounted(sensors):
+        if not isinstance(lidar, Lidar):
+            continue
+        yield from _lidar_faults(lidar, place.at(*keys))
+        met = _links_met(model, lidar, poses)
+        if len(met) >= SHUT * lidar.beams:
             link_name = Counter(met).most_common(1)[0][0]
-            yield (f"{place.at('lidar', 'mount')}: the lidar is inside of link '{link_name}' and would see nothing else; mount it outside")
+            yield (f"{place.at(*keys, 'mount')}: the lidar is inside of link '{link_name}' and would see nothing else; mount it outside")
 
 
 def _lidar_faults(lidar: Lidar, place: FileLocation) -> Iterator[str]:
@@ -73,10 +75,11 @@ def sensor_notes(model: UrdfModel, sensors: Sensors, poses: Poses, turning: set[
     for kind, example in NEEDED.items():
         if getattr(sensors, kind) is None:
             yield f"no {kind}: no mission takes it, for SLAM needs them; give it sensors: {kind}: {{{example}}}"
-    if sensors.lidar is not None:
-        share = len(_links_met(model, sensors.lidar, poses)) / sensors.lidar.beams
+    for lidar in sensors.lidars:
+        share = len(_links_met(model, lidar, poses)) / lidar.beams
         if 0.0 < share < SHUT:
-            yield f"{100 * share:.0f} % of the lidar's beams meet the vehicle's own body"
+            which = "lidar" if not sensors.other_lidars else f"lidar '{lidar.frame}'"
+            yield f"{100 * share:.0f} % of the {which}'s beams meet the vehicle's own body"
 
 
 def mounted(sensors: Sensors) -> Iterator[tuple[tuple[Key, ...], Any]]:
@@ -85,7 +88,7 @@ def mounted(sensors: Sensors) -> Iterator[tuple[tuple[Key, ...], Any]]:
         sensor = getattr(sensors, kind)
         if sensor is not None:
             yield (kind,), sensor
-    for kind in ("sonars", "rangefinders"):
+    for kind in ("other_lidars", "sonars", "rangefinders"):
         yield from (((kind, i), sensor) for i, sensor in enumerate(getattr(sensors, kind)))
 
 

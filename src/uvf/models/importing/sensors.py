@@ -36,17 +36,22 @@ def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> S
         if make is None or sensor.link not in base_from_link:
             foreign.notes.add("sensors of a kind that is not simulated, dropped", f"{sensor.kind} on {sensor.link}")
             continue
-        mount = _mount(compose(base_from_link[sensor.link], sensor.link_from_sensor))
-        if kind in SEVERAL:
+        base_from_sensor = compose(base_from_link[sensor.link], sensor.link_from_sensor)
+        mount, frame = _mount(base_from_sensor), sensor.link if _is_link_itself(sensor) else f"{sensor.link}_{kind}"
+        if kind == "lidar" and "lidar" in section:
+            if not _is_level(base_from_sensor):
+                foreign.notes.add("lidars that are not level dropped", sensor.link)
+                continue
+            others = section.setdefault("other_lidars", [])
+            taken = {section["lidar"]["frame"], *(other["frame"] for other in others)}
+            others.append({"mount": mount, **make(sensor, foreign), "frame": frame if frame not in taken else f"{frame}_{len(others) + 2}"})
+        elif kind in SEVERAL:
             all_of_it = section.setdefault(SEVERAL[kind], [])
             all_of_it.append({"mount": mount, **make(sensor, foreign), "frame": f"{sensor.link}_{kind}_{len(all_of_it) + 1}"})
         elif kind in section:
             foreign.notes.add(f"a vehicle has one {kind}; the others dropped", sensor.link)
         else:
-            frame = sensor.link if _is_link_itself(sensor) else f"{sensor.link}_{kind}"
-            section[kind] = {"mount": mount, **make(sensor, foreign), "frame": frame}
-            if kind == "gnss":
-                section[kind] = {"preset": "good"}
+            section[kind] = {"preset": "good"} if kind == "gnss" else {"mount": mount, **make(sensor, foreign), "frame": frame}
     foreign.notes.add("guessed: wheel encoders of 4096 ticks a turn at 50 Hz")
     section["encoders"] = {"hz": 50.0, "ticks_per_turn": 4096}
     return section
@@ -56,10 +61,13 @@ def _rank(sensor: ForeignSensor, base_from_link: dict[str, Transform]) -> float:
     """Of several lidars the one that sees most for SLAM is the first: level, about it, and far."""
     if _kind(sensor)[0] != "lidar" or sensor.element is None or sensor.link not in base_from_link:
         return 0.0
-    up = rotate(compose(base_from_link[sensor.link], sensor.link_from_sensor).rotation, np.array((0.0, 0.0, 1.0)))
     beams, fan = _fan(sensor)
     area = fan * min(_number(sensor, "range/max", 10.0), FAR) ** 2 * min(beams, 360)
-    return -area if abs(up[2]) > LEVEL else -1e-9
+    return -area if _is_level(compose(base_from_link[sensor.link], sensor.link_from_sensor)) else -1e-9
+
+
+def _is_level(base_from_sensor: Transform) -> bool:
+    return abs(float(rotate(base_from_sensor.rotation, np.array((0.0, 0.0, 1.0)))[2])) > LEVEL
 
 
 def _by_names(foreign: Foreign) -> Iterator[ForeignSensor]:

@@ -40,6 +40,8 @@ PRESETS: dict[str, dict[str, dict[str, float]]] = {
     "imu": {"book": {"hz": 100.0, "gyro_noise": math.radians(0.13), "accel_noise": 0.0025 * 9.80665, "mag_noise": 2.5e-7}},
     "air_data": {"book": {"hz": 50.0, "static_noise": 10.0, "static_bias": 125.0, "differential_noise": 2.0, "differential_bias": 20.0}},
 }
+SEVERAL = {"other_lidars": "lidar"}
+"""Sections that are lists, and whose presets they take."""
 
 
 def fill_presets(data: Any, place: FileLocation) -> Any:
@@ -50,6 +52,10 @@ def fill_presets(data: Any, place: FileLocation) -> Any:
     filled = {
         kind: _filled(sensors[kind], known, place.at("sensors", kind, "preset")) for kind, known in PRESETS.items() if kind in sensors
     }
+    for kind, one in SEVERAL.items():
+        if isinstance(sensors.get(kind), list):
+            place_of = [place.at("sensors", kind, i, "preset") for i in range(len(sensors[kind]))]
+            filled[kind] = [_filled(each, PRESETS[one], at) for each, at in zip(sensors[kind], place_of, strict=True)]
     return {**data, "sensors": {**sensors, **filled}}
 
 

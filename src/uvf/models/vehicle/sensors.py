@@ -200,7 +200,8 @@ class Gimbal(Camera, frozen=True, forbid_unknown_fields=True):
 class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What the vehicle carries; absent = not fitted."""
 
-    lidar: Annotated[Lidar | None, plain("2-D laser scanner.")] = None
+    lidar: Annotated[Lidar | None, plain("2-D laser scanner; the one by whose scans SLAM places the vehicle.")] = None
+    other_lidars: Annotated[list[Lidar], plain("Further 2-D laser scanners, for what the first one does not see.")] = []
     imu: Annotated[ImuSensor | None, plain("Gyroscopes, accelerometers and magnetometer.")] = None
     encoders: Annotated[Encoders | None, plain("Wheel encoders.")] = None
     gnss: Annotated[GnssSensor | None, plain("Satellite receiver.")] = None
@@ -212,13 +213,25 @@ class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     rangefinders: Annotated[list[RangeFinder], plain("Single-beam lasers.")] = []
     bumpers: Annotated[list[Bumper], plain("Contact sensors.")] = []
 
+    @property
+    def lidars(self) -> list[Lidar]:
+        """All 2-D laser scanners, the first one first."""
+        return [*([self.lidar] if self.lidar is not None else []), *self.other_lidars]
+
 
 Sampled = Lidar | ImuSensor | Encoders | GnssSensor | AirDataSensor | Sonar | RangeFinder | Camera
 
 
 def check_sensors(sensors: Sensors, place: FileLocation) -> None:
     """Checks what the types of the ``sensors`` section do not say. Raises BadInput."""
-    _check_lidar(sensors.lidar, place.at("lidar"))
+    if sensors.lidar is not None:
+        _check_lidar(sensors.lidar, place.at("lidar"))
+    elif sensors.other_lidars:
+        raise BadInput(f"{place.at('other_lidars')}: there is no first one; give one of them as 'lidar'")
+    for i, lidar in enumerate(sensors.other_lidars):
+        _check_lidar(lidar, place.at("other_lidars", i))
+        if lidar.frame in (other.frame for other in sensors.lidars[: i + 1]):
+            raise BadInput(f"{place.at('other_lidars', i)}: a second lidar with frame '{lidar.frame}'; give each a frame of its own")
     _check_rangers("sonar", sensors.sonars, place.at("sonars"))
     _check_rangers("range finder", sensors.rangefinders, place.at("rangefinders"))
     _check_bumpers(sensors.bumpers, place.at("bumpers"))
@@ -226,9 +239,9 @@ def check_sensors(sensors: Sensors, place: FileLocation) -> None:
 
 def check_sensors_of_aircraft(sensors: Sensors, place: FileLocation) -> None:
     """Checks that an aircraft has no sensors that only work on ground vehicles. Raises BadInput."""
-    for kind in ("encoders", "bumpers"):
+    for kind in ("encoders", "bumpers", "other_lidars"):
         if getattr(sensors, kind):
-            raise BadInput(f"{place.at(kind)}: an aircraft has no {kind}; leave them out")
+            raise BadInput(f"{place.at(kind)}: an aircraft has no {kind.replace('_', ' ')}; leave them out")
     if sensors.gnss is not None and sensors.gnss.mount != Mount():
         raise BadInput(f"{place.at('gnss', 'mount')}: an aircraft's receiver is at its centre of gravity; leave it out")
     if sensors.lidar is not None and sensors.lidar.sweep_time > 0.0:
@@ -239,9 +252,7 @@ def check_sensors_of_aircraft(sensors: Sensors, place: FileLocation) -> None:
             raise BadInput(f"{place.at(kind, 'mount', 'link')}: an aircraft's model has no links; give xyz and rpy")
 
 
-def _check_lidar(lidar: Lidar | None, place: FileLocation) -> None:
-    if lidar is None:
-        return
+def _check_lidar(lidar: Lidar, place: FileLocation) -> None:
     if lidar.range_min >= lidar.range_max:
         raise BadInput(f"{place.at('range_min')}: {lidar.range_min:g} m is not below range_max, {lidar.range_max:g} m")
     sweep = (lidar.beams - 1) * lidar.angle_increment

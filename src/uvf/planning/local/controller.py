@@ -93,17 +93,23 @@ class LocalController:
         self._odometer = 0.0  # m
         self._pose: Pose2 | None = None
         self._near: Floats = np.zeros((0, 2))
+        self._shown: dict[tuple[float, float], Floats] = {}
+        """(n, 2) m, the poses' frame: near ends of the last scan from each place on the vehicle."""
         self._last = STOP
 
-    def see(self, t: float, pose: Pose2, eye: tuple[float, float], points: Floats, ranges: Floats) -> None:
+    def see(self, t: float, pose: Pose2, eye: tuple[float, float], points: Floats, ranges: Floats, follows: bool = True) -> None:
         """Takes a planar scan at ``t`` [s]: points (n, 2) [m, base frame] in the order of the beams, ranges (n,) [m], 0 = no return.
 
-        eye: (x, y) [m, base frame] of the sensor. A beam without return has its point where it would end at its farthest; it clears.
+        A beam without return has its point where it would end at its farthest; it clears. eye: (x, y) [m, base frame] of the sensor; of
+        several, each shows what the others do not, but what moves is followed by the scans of only one (``follows``).
         """
         ends = transform(pose, points)
         (x, y), *_ = transform(pose, np.array((eye,))).tolist()
         self.layer.recentre((pose[0], pose[1]))
-        moves = self.moving.observe(t, ends, ranges, SeenFrom((x, y), self.layer.lately_free(t, (x, y), ends)))
+        if follows:
+            moves = self.moving.observe(t, ends, ranges, SeenFrom((x, y), self.layer.lately_free(t, (x, y), ends)))
+        else:
+            moves = self._moves(ends)
         hits = (ranges > 0.0) & (ranges <= self.settings.obstacle_range) & ~moves
         far = np.maximum(ranges, 1e-9) > self.settings.obstacle_range
         if far.any():
@@ -114,8 +120,12 @@ class LocalController:
         self.layer.forget(self._odometer)
         for mx, my, _, _, radius in self.moving.moving():  # it was marked before it was known to move
             self.layer.free_disc((mx, my), radius + BESIDE)
-        near = points[(ranges > 0.0) & ~self._evaded(ends) & (np.abs(points) <= NEAR).all(axis=1)]
-        self._near = np.concatenate((near, transform(inverse(pose), self.layer.lethal_near((pose[0], pose[1]), REMEMBERED))))
+        kept = (ranges > 0.0) & ~self._evaded(ends) & (np.abs(points) <= NEAR).all(axis=1)
+        others = [transform(inverse(pose), shown) for place, shown in self._shown.items() if place != eye]
+        self._shown[eye] = ends[kept]
+        self._near = np.concatenate(
+            (points[kept], *others, transform(inverse(pose), self.layer.lethal_near((pose[0], pose[1]), REMEMBERED)))
+        )
         self.keep_out(self.hidden.points(self._odometer, (pose[0], pose[1]), self.settings.size / 2))
 
     def keep_out(self, points: Floats) -> None:
@@ -128,18 +138,20 @@ class LocalController:
         if self._pose is not None:
             self._near = np.concatenate((self._near, transform(inverse(self._pose), points)))
 
+    def _moves(self, ends: Floats, least: float = 0.0) -> NDArray[np.bool_]:
+        """Mask (n,) of the points that belong to what moves, no slower than ``least`` [m/s]."""
+        out = np.zeros(len(ends), dtype=np.bool_)
+        for x, y, vx, vy, radius in self.moving.moving():
+            if hypot(vx, vy) >= least:
+                out |= (ends[:, 0] - x) ** 2 + (ends[:, 1] - y) ** 2 < (radius + EDGE) ** 2
+        return out
+
     def _evaded(self, ends: Floats) -> NDArray[np.bool_]:
         """Mask (n,) of the points that belong to what moves so fast that the stop would not help against it: it hits who stands.
 
         The local planner evades it. Braking in its way would be worse, and so would be braking for what is about to pass.
         """
-        out = np.zeros(len(ends), dtype=np.bool_)
-        if self.settings.stops_for_fast:
-            return out
-        for x, y, vx, vy, radius in self.moving.moving():
-            if hypot(vx, vy) >= FAST:
-                out |= (ends[:, 0] - x) ** 2 + (ends[:, 1] - y) ** 2 < (radius + EDGE) ** 2
-        return out
+        return np.zeros(len(ends), dtype=np.bool_) if self.settings.stops_for_fast else self._moves(ends, FAST)
 
     def _travel(self, pose: Pose2) -> None:
         """What is remembered is known the worse the farther the vehicle has come since: odometry drifts by the way, not by time."""

@@ -20,7 +20,10 @@ def sensor_frames(vehicle: str, sensors: Sensors, t: float) -> FrameTransforms:
     A gimbal's own frame is not among them, for it moves.
     """
     fitted = [
-        s for s in (sensors.lidar, sensors.imu, sensors.camera, sensors.chase, *sensors.sonars, *sensors.rangefinders) if s is not None
+        *sensors.lidars,
+        *(s for s in (sensors.imu, sensors.camera, sensors.chase) if s is not None),
+        *sensors.sonars,
+        *sensors.rangefinders,
     ]
     transforms = [_transform(f"{vehicle}/base_link", f"{vehicle}/{s.frame}", s.mount, t) for s in fitted]
     for camera in (c for c in (sensors.camera, sensors.chase, sensors.gimbal) if c is not None):

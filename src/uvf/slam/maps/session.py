@@ -25,13 +25,15 @@ from uvf.slam.reading import Beams, Reading
 Floats = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]
 
-FORMAT, VERSION = "uvf slam session", 1
+FORMAT, VERSION = "uvf slam session", 2
+"""Version 1 has no readings of further lidars."""
 KINDS = ("odometry", "match", "loop")
 """What an edge comes from: wheels and IMU, a match of neighbours, a match after a loop."""
 MOST_BYTES = 4 << 30
 _TYPES: dict[str, Any] = {
     **{"stamps": np.float64, "lidar_of": np.int64, "poses": np.float64, "odometry": np.float64},
     **{"beam_counts": np.int64, "ranges": np.float32, "lidars": np.float64, "bearing_counts": np.int64, "bearings": np.float64},
+    **{"aside": np.int64},
     **{"ends": np.int64, "measured": np.float64, "information": np.float64, "kinds": np.uint8, "enabled": np.bool_},
 }
 _EDGES = ("ends", "measured", "information", "kinds", "enabled")
@@ -109,11 +111,15 @@ class MappingSession:
 
 
 def _arrays(session: MappingSession) -> Arrays:
-    readings = [keyframe.reading for keyframe in session.keyframes]
+    """Rows of readings: first those of the keyframes, then those of further lidars; ``aside`` tells to which keyframe these belong."""
+    own = [keyframe.reading for keyframe in session.keyframes]
+    aside = [(k, other) for k, reading in enumerate(own) for other in reading.others]
+    readings = [*own, *(other for _, other in aside)]
     lidars, lidar_of = _numbered(reading.beams for reading in readings)
     arrays = {
         "stamps": [reading.t for reading in readings],
         "lidar_of": lidar_of,
+        "aside": [k for k, _ in aside],
         "poses": np.array([keyframe.map_from_base for keyframe in session.keyframes]).reshape(-1, 3),
         "odometry": np.array([reading.odom_from_base for reading in readings]).reshape(-1, 3),
         "beam_counts": [len(reading.ranges) for reading in readings],
@@ -144,9 +150,13 @@ def _keyframes(arrays: Arrays) -> Iterator[Keyframe]:
     bearings = np.split(arrays["bearings"], np.cumsum(arrays["bearing_counts"])[:-1])
     lidars = [Beams((x, y), b, low, high, t) for (x, y, low, high, t), b in zip(arrays["lidars"].tolist(), bearings, strict=False)]
     ranges = np.split(arrays["ranges"].astype(np.float64), np.cumsum(arrays["beam_counts"])[:-1])
-    rows = zip(arrays["stamps"].tolist(), arrays["lidar_of"], arrays["poses"].tolist(), arrays["odometry"].tolist(), ranges, strict=False)
-    for t, lidar, pose, odometry, measured in rows:
-        yield Keyframe(Pose2(*pose), Reading(t, measured, lidars[lidar], Pose2(*odometry)))
+    rows = zip(arrays["stamps"].tolist(), arrays["lidar_of"], arrays["odometry"].tolist(), ranges, strict=False)
+    readings = [Reading(t, measured, lidars[lidar], Pose2(*odometry)) for t, lidar, odometry, measured in rows]
+    aside: dict[int, list[Reading]] = {}
+    for k, other in zip(arrays["aside"].tolist(), readings[len(arrays["poses"]) :], strict=True):
+        aside.setdefault(k, []).append(other)
+    for k, (pose, reading) in enumerate(zip(arrays["poses"].tolist(), readings, strict=False)):
+        yield Keyframe(Pose2(*pose), replace(reading, others=tuple(aside.get(k, ()))))
 
 
 def _read(data: io.BytesIO, path: str) -> tuple[dict[str, Any], Arrays]:
@@ -159,9 +169,10 @@ def _read(data: io.BytesIO, path: str) -> tuple[dict[str, Any], Arrays]:
             header = json.loads(bytes(file["header"]))
             if not isinstance(header, dict) or header.get("format") != FORMAT:
                 raise BadInput(f"session {path}: not a session of uvf slam")
-            if header.get("version") != VERSION:
+            if header.get("version") not in (1, VERSION):
                 raise BadInput(f"session {path}: version {header.get('version')}; this is read up to version {VERSION}: use a newer uvf")
-            return header, {name: file[name] for name in _TYPES}
+            added = {"aside": np.zeros(0, np.int64)} if header["version"] == 1 else {}
+            return header, {name: added[name] if name in added else file[name] for name in _TYPES}
     except KeyError as error:
         raise BadInput(f"session {path}: not a session of uvf slam, or damaged: {error.args[0]}") from error
     except _DAMAGED as error:
@@ -174,7 +185,7 @@ def _check(a: Arrays, path: str) -> None:
     for name in ("stamps", "poses", "odometry", "bearings", "measured", "information"):
         if not np.isfinite(a[name]).all():
             raise BadInput(f"session {path}: {name}: a number that is not finite, in row {int(np.argwhere(~np.isfinite(a[name]))[0][0])}")
-    for name, count in (("lidar_of", len(a["lidars"])), ("ends", len(a["stamps"])), ("kinds", len(KINDS))):
+    for name, count in (("lidar_of", len(a["lidars"])), ("ends", len(a["poses"])), ("aside", len(a["poses"])), ("kinds", len(KINDS))):
         wrong = a[name][(a[name] < 0) | (a[name] >= count)]
         if wrong.size:
             raise BadInput(f"session {path}: {name}: no number {int(wrong[0])}; there are {count}")
@@ -191,7 +202,7 @@ def _check_shapes(a: Arrays, path: str) -> None:
     n, m, lidars = a["stamps"].size, a["kinds"].size, a["bearing_counts"].size
     shapes: dict[str, tuple[int, ...]] = {
         **dict.fromkeys(("stamps", "lidar_of", "beam_counts"), (n,)),
-        **dict.fromkeys(("poses", "odometry"), (n, 3)),
+        **{"odometry": (n, 3), "poses": (n - a["aside"].size, 3), "aside": (a["aside"].size,)},
         **{"lidars": (lidars, 5), "bearing_counts": (lidars,), "ends": (m, 2), "measured": (m, 3), "information": (m, 3, 3)},
         **dict.fromkeys(("kinds", "enabled"), (m,)),
         **{"ranges": (int(a["beam_counts"].sum()),), "bearings": (int(a["bearing_counts"].sum()),)},

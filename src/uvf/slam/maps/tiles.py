@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.grids import distance_field
 from uvf.maths.rotations import wrap
-from uvf.maths.se2 import Pose2
+from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.models.yaml_data import BadInput
 from uvf.slam.maps.evidence import CellEvidence
 from uvf.slam.maps.tile_kernels import TILE, beam_ends, sketch, touched_tiles
@@ -93,9 +93,10 @@ class TileMap:
         pose = keyframe.map_from_base
         if not all(isfinite(v) and abs(v) < FARTHEST for v in pose):
             raise BadInput(f"a keyframe at {tuple(pose)} cannot be drawn: the map reaches to {FARTHEST:g} m; look at the odometry")
-        beams, ranges = keyframe.reading.beams, keyframe.reading.ranges
-        if len(ranges) != len(beams.bearings):
-            raise BadInput(f"a keyframe of {len(ranges)} ranges cannot be drawn: its lidar has {len(beams.bearings)} beams")
+        for reading in (keyframe.reading, *keyframe.reading.others):
+            if len(reading.ranges) != len(reading.beams.bearings):
+                bearings = len(reading.beams.bearings)
+                raise BadInput(f"a keyframe of {len(reading.ranges)} ranges cannot be drawn: its lidar has {bearings} beams")
         old = self._drawn.get(id(keyframe.reading))
         if old is None:
             old = _Drawn(keyframe.reading, pose, self._count // EPOCH, _mean_range(keyframe.reading))
@@ -141,13 +142,20 @@ class TileMap:
         return distance_field(cells > OCCUPIED) * self.resolution, corner
 
     def _draw(self, drawn: _Drawn, sign: int) -> None:
+        """What all lidars saw, with where the base was then."""
+        map_from_odom = compose(drawn.map_from_base, inverse(drawn.reading.odom_from_base))
+        self._draw_reading(drawn.reading, drawn.map_from_base, drawn.epoch, sign)
+        for other in drawn.reading.others:
+            self._draw_reading(other, compose(map_from_odom, other.odom_from_base), drawn.epoch, sign)
+
+    def _draw_reading(self, reading: Reading, pose: Pose2, epoch: int, sign: int) -> None:
         if self._outdated:
             return  # all will be drawn anew
-        beams, pose = drawn.reading.beams, drawn.map_from_base
+        beams = reading.beams
         c, s = cos(pose.yaw), sin(pose.yaw)
         sensor = (pose.x + c * beams.origin[0] - s * beams.origin[1], pose.y + s * beams.origin[0] + c * beams.origin[1], pose.yaw)
         gate = (beams.range_min, min(beams.range_max, LONGEST), min(NO_RETURN_REACH * beams.range_max, OPEN_LIMIT))
-        ends, hit, start, (row, column, rows, columns) = beam_ends((drawn.reading.ranges, beams.directions), sensor, gate, self.resolution)
+        ends, hit, start, (row, column, rows, columns) = beam_ends((reading.ranges, beams.directions), sensor, gate, self.resolution)
         size = rows * columns * TILE * TILE
         if size > self._window.size:
             self._window = np.zeros(size, dtype=np.int8)
@@ -156,10 +164,10 @@ class TileMap:
         window = window.reshape(rows * TILE, columns * TILE)
         tiles = touched_tiles(window.view(np.int64))
         keys = ((tiles[:, 0] + row) * _KEY + (tiles[:, 1] + column)).tolist()
-        if self._evidence.is_settled(drawn.epoch, keys):
+        if self._evidence.is_settled(epoch, keys):
             self._outdated, window[:] = True, 0
         else:
-            self._evidence.add(drawn.epoch, keys, (window, tiles), sign)
+            self._evidence.add(epoch, keys, (window, tiles), sign)
             self._dirty.update(keys)
 
     def _take_out(self, drawn: _Drawn) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from schemas.messages import Clock, FrameTransform, Quaternion, Vector3
+from schemas.messages import Clock, FrameTransform, LaserScan, Quaternion, Vector3
 from services.gcs.actions.page import Layer
 from services.gcs.state.state import Model
 from services.gcs.view.drawing import FloorPicture, MeshNode, Points, Polyline, TextNode
@@ -82,6 +82,18 @@ def test_the_path_the_scan_and_the_goal_are_drawn(station):
     assert isinstance(nodes[f"/path/{UGV}"], Polyline)
     assert isinstance(nodes[f"/scan/{UGV}"], Points)
     assert nodes[f"/goal/{UGV}"].points[:, :2].mean(axis=0) == pytest.approx(station.script.goal, abs=0.05)
+
+
+def test_what_a_second_lidar_sees_is_drawn_with_the_scan(station):
+    vehicle = station.model.vehicles[UGV]
+    before, sensors = station.page.now.nodes[f"/scan/{UGV}"].points, vehicle.member.file.sensors
+    rear = msgspec.structs.replace(sensors.lidar, frame="rear")
+    file = msgspec.structs.replace(vehicle.member.file, sensors=msgspec.structs.replace(sensors, other_lidars=[rear]))
+    vehicle.member = dataclasses.replace(vehicle.member, file=file)
+    scans = [LaserScan(frame_id=f"{UGV}/{frame}", start_angle=0.0, end_angle=1.0, ranges=[1.0, 2.0]) for frame in ("rear", "stranger")]
+    station.model.hear_other_scans({UGV: scans, "stranger": scans})
+    station.run(0.3, silent=True)
+    assert len(station.page.now.nodes[f"/scan/{UGV}"].points) == len(before) + 2
 
 
 def test_an_accepted_click_moves_the_goal(station):
