@@ -32,7 +32,7 @@ PROBES = np.array([(0.0, 0.0)] + [(x, y) for x in (-1.5, -0.5, 0.5, 1.5) for y i
 def mapped_floor(track: RecordedTrack) -> Finding:
     """Share of the reachable floor that the vehicle's own map knows as free [0 to 1].
 
-    Counts at the end of the run, in the last map. The floor is what the vehicle can reach from its start. 0 without a map.
+    Counts at the end of the run, in the last map. The floor is what the outline of the vehicle can cover from its start. 0 without a map.
     """
     if track.grid is None:
         return Finding(0.0, note="there is no map")

@@ -8,10 +8,12 @@ from numpy.typing import NDArray
 
 from launch.worlds.report import RESOLUTION
 from uvf.maths.footprint import Footprint, footprint
+from uvf.maths.se2 import Pose2
 from uvf.models.mission.fixtures import MARKER
 from uvf.models.scenario import Scenario
 from uvf.models.shapes.scene import primitives
 from uvf.models.shapes.solid import Solid
+from uvf.models.urdf.outline import ground_outline
 from uvf.models.world.file import WorldFile
 from uvf.models.world.footing import Footing
 from uvf.models.world.geometry import WALL, floor_plan, free_regions, things
@@ -40,12 +42,15 @@ def problems(world: WorldFile, radius: float) -> Iterator[str]:
 
 
 def blocked_starts(site: Scenario) -> Iterator[str]:
-    """Yields the ground vehicles of a mission that start inside or too close to something."""
+    """Yields the ground vehicles of a mission that start inside of something."""
     footing = Footing(site.world)
     for name, member in site.members.items():
         body, start = member.file.ground, member.entry.start
-        if body is not None and (room := footing.at(start.x, start.y).room) < body.radius:
-            yield f"start of {name} at ({start.x:g}, {start.y:g}): {room:.2f} m to the nearest thing, its radius is {body.radius:g} m"
+        if body is None:
+            continue
+        outline = ground_outline(member.folder / body.urdf, body.radius)
+        if not footing.is_free(Pose2(start.x, start.y, start.yaw), outline):
+            yield f"start of {name} at ({start.x:g}, {start.y:g}), {np.degrees(start.yaw):.0f} deg: it stands in a wall or furniture"
 
 
 def hidden_markers(site: Scenario) -> Iterator[str]:
@@ -99,11 +104,13 @@ def _level(thing: Solid) -> bool:
 
 
 def _out_of_reach(world: WorldFile, radius: float) -> Iterator[str]:
-    """All floor but the largest connected one, and but the hollows of meshes."""
+    """All floor but the largest connected one, what lies about a closed building, and the hollows of meshes."""
     hollows = [b for t in things(world) if t.shape == "mesh" and ((b := _bounds(t))[1] - b[0])[:2].max() <= LARGEST_HOLLOW]
     plan = floor_plan(world, RESOLUTION)
     x, y = plan.centres()
     for region in free_regions(plan, radius)[1:]:
+        if region[0].any() and region[-1].any() and region[:, 0].any() and region[:, -1].any():
+            continue
         area = float(region.sum()) * RESOLUTION**2
         cells = np.column_stack((x[region], y[region]))
         hollow = any((cells >= low[:2]).all() and (cells <= high[:2]).all() for low, high in hollows)

@@ -8,10 +8,12 @@ from services.sim_ground.service import SimGround
 from services.sim_ground.stage import GroundStage, JoiningVehicle
 from services.sim_ground.world import BodyPlacement, BulletWorld
 from uvf.maths.raycast import warm_up
+from uvf.maths.se2 import Pose2
 from uvf.models.aircraft.shape import aircraft_shape
 from uvf.models.mission.file import StartPose, Vehicle
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.urdf.model import check_urdf, engine_urdf, load_urdf
+from uvf.models.urdf.outline import ground_outline
 from uvf.models.vehicle.file import GroundBody, load_vehicle
 from uvf.models.vehicle.sensors import Sensors
 from uvf.models.world.footing import COARSE, Footing
@@ -77,12 +79,10 @@ def _checked(site: Scenario, member: MissionVehicle, footing: Footing) -> float:
     _check_rates(member, body)
     start = member.entry.start
     room, height, slope = footing.at(start.x, start.y)
-    if room < body.radius:
+    if not footing.is_free(Pose2(start.x, start.y, start.yaw), ground_outline(member.folder / body.urdf, body.radius)):
         place = FileLocation(str(site.mission_path)).at("vehicles", member.name, "start")
-        raise BadInput(
-            f"{place}: ({start.x:g}, {start.y:g}) is {room:.2f} m from a wall or furniture, "
-            f"but the vehicle has a radius of {body.radius:g} m; move it"
-        )
+        near = f"its middle is {room:.2f} m from it" if room > 0.0 else "its middle, too"
+        raise BadInput(f"{place}: at ({start.x:g}, {start.y:g}) the vehicle stands in a wall or furniture, {near}; move or turn it")
     return height + slope * (body.radius + COARSE)
 
 

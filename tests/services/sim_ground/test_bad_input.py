@@ -100,7 +100,9 @@ def test_a_sensor_rate_that_does_not_fit_the_step(root):
 
 
 def test_a_start_inside_the_furniture(root):
-    assert "vehicles: burger: start: (0.6, 2.2) is 0.00 m from a wall or furniture" in refusal(root, (0.6, 2.2, 0.0))
+    assert "vehicles: burger: start: at (0.6, 2.2) the vehicle stands in a wall or furniture, its middle, too" in refusal(
+        root, (0.6, 2.2, 0.0)
+    )
 
 
 def test_a_charger_under_the_furniture(root):

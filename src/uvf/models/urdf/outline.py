@@ -1,11 +1,14 @@
 """The outline of a model on the ground, from its collision shapes."""
 
+from pathlib import Path
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import HalfspaceIntersection
 
 from uvf.models.shapes.mesh import placed, reach
 from uvf.models.shapes.solid import Solid
+from uvf.models.urdf.model import load_urdf
 from uvf.models.urdf.robot import UrdfModel
 
 Floats = NDArray[np.float64]
@@ -28,6 +31,19 @@ def plan_outline(model: UrdfModel) -> Floats | None:
     distances = np.maximum(np.max([reach(solid, normals) for solid in solids], axis=0), LEAST)
     corners: Floats = HalfspaceIntersection(np.column_stack((normals[:, :2], -distances)), np.zeros(2)).intersections
     return corners
+
+
+def ground_outline(urdf: Path, radius: float) -> Floats:
+    """(n, 2) [m, base_link] convex outline of a vehicle, anticlockwise; where its URDF has no collision shapes, its circle.
+
+    radius: of that [m]. Raises BadInput as ``plan_outline``, and for a URDF that cannot be read.
+    """
+    outline = plan_outline(load_urdf(urdf))
+    if outline is not None:
+        return outline[np.argsort(np.arctan2(outline[:, 1], outline[:, 0]))]
+    angles = np.arange(SIDES) * (2.0 * np.pi / SIDES)
+    circle: Floats = radius / np.cos(np.pi / SIDES) * np.column_stack((np.cos(angles), np.sin(angles)))
+    return circle
 
 
 def highest(model: UrdfModel) -> float:

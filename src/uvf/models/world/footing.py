@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.footprint import Footprint, footprint
+from uvf.maths.se2 import Pose2, transform
 from uvf.maths.solids import chosen, joined
 from uvf.models.shapes.scene import primitives
 from uvf.models.world.drivable import drivable
@@ -43,6 +44,11 @@ class Footing:
         floor, slope = self._floor(x, y)
         return GroundContact(self.room(x, y, (floor + GRAZE, floor + height)), floor, slope)
 
+    def is_free(self, pose: Pose2, outline: Floats, height: float = 0.2) -> bool:
+        """Whether a vehicle stands in nothing at a pose [m, rad, world]; outline: (n, 2) [m, about its place] convex, anticlockwise."""
+        floor, _ = self._floor(pose.x, pose.y)
+        return not overlaps(transform(pose, outline), footprint(self._bulk, floor + GRAZE, floor + height))
+
     def room(self, x: float, y: float, heights: tuple[float, float]) -> float:
         """Distance [m] from (x, y) [m, world] to the nearest thing between two heights [m, world]; 0 inside one, inf when there is none."""
         return distance(footprint(self._bulk, *heights), x, y)
@@ -61,6 +67,23 @@ def distance(shadows: Footprint, x: float, y: float) -> float:
     """Distance [m] from (x, y) [m] to the nearest shadow; 0 inside one, inf when there is none."""
     nearest = [max(float(np.hypot(x - cx, y - cy)) - radius, 0.0) for cx, cy, radius in shadows.discs]
     return min([*nearest, *(_to_outline(outline, np.array((x, y))) for outline in shadows.outlines)], default=np.inf)
+
+
+def overlaps(outline: Floats, shadows: Footprint) -> bool:
+    """Whether a convex outline (n, 2) [m], anticlockwise, and any shadow have more than an edge in common (separating axes)."""
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    for other in shadows.outlines:
+        if (other.min(axis=0) < high).all() and (other.max(axis=0) > low).all() and not (_parts(outline, other) or _parts(other, outline)):
+            return True
+    return any(_to_outline(outline, np.array((x, y))) < radius for x, y, radius in shadows.discs)
+
+
+def _parts(outline: Floats, other: Floats) -> bool:
+    """Whether a side of the outline has all of the other one beyond it."""
+    sides = np.roll(outline, -1, axis=0) - outline
+    outward = np.column_stack((sides[:, 1], -sides[:, 0]))
+    edges = (outward * outline).sum(axis=1)
+    return bool(((other @ outward.T).min(axis=0) >= edges - 1e-9).any())
 
 
 def _to_outline(outline: Floats, point: Floats) -> float:

@@ -3,9 +3,12 @@
 import numpy as np
 
 from schemas.messages import Grid
+from uvf.maths.se2 import Pose2
 from uvf.models.scenario import MissionVehicle
+from uvf.models.urdf.outline import ground_outline
 from uvf.models.world.file import WorldFile
-from uvf.models.world.geometry import floor_plan, reachable_floor
+from uvf.models.world.geometry import floor_plan
+from uvf.models.world.reach import covered_floor
 from uvf.runtime.messages.convert import occupancy_cells
 
 RESOLUTION = 0.05  # m
@@ -19,7 +22,10 @@ class MappedFloor:
         start = member.entry.start
         plan = floor_plan(world, RESOLUTION)
         x, y = plan.centres()
-        inside = reachable_floor(plan, start.x, start.y, member.file.ground.radius if member.file.ground else 0.0)
+        body = member.file.ground
+        if body is None:
+            raise ValueError(f"{member.name} is no ground vehicle")
+        inside = covered_floor(plan, Pose2(start.x, start.y, start.yaw), ground_outline(member.folder / body.urdf, body.radius))
         c, s, dx, dy = np.cos(start.yaw), np.sin(start.yaw), x[inside] - start.x, y[inside] - start.y
         self._ahead, self._left = (c * dx + s * dy).astype(np.float32), (c * dy - s * dx).astype(np.float32)
 
