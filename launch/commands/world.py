@@ -50,12 +50,12 @@ def world_picture(
     from launch.worlds.picture import save_picture
     from launch.worlds.report import RESOLUTION, largest_reachable
     from uvf.models.world.file import load_world
-    from uvf.models.world.geometry import floor_plan
+    from uvf.models.world.geometry import cell_size, floor_plan
 
     path = out or _worlds() / name / "picture.png"
     with bad_input_is_one_line():
         world = load_world(_worlds(), name)
-        plan = floor_plan(world, RESOLUTION)
+        plan = floor_plan(world, cell_size(world, RESOLUTION))
         save_picture(world, plan, largest_reachable(plan, radius), path)
     typer.echo(f"uvf: {path}")
 
@@ -65,19 +65,27 @@ def world_check(
     name: NameArgument,
     radius: RadiusOption = BURGER,
     mission: Annotated[str | None, typer.Option("--mission", "-m", help="Also look whether its vehicles start freely.")] = None,
+    vehicle: Annotated[
+        str | None, typer.Option("--vehicle", "-v", help="Also tell what its lidar does not see or takes for walls.")
+    ] = None,
 ) -> None:
     """Look for things in the air or in the ground, floor out of reach, scripts through walls, blocked starts."""
     from launch import settings
+    from launch.worlds.blind_spots import blind_spots
     from launch.worlds.check import blocked_starts, problems
     from launch.worlds.leaning import notes
     from uvf.models.scenario import load_scenario
+    from uvf.models.vehicle.file import load_vehicle
     from uvf.models.world.file import load_world
 
     with bad_input_is_one_line():
         world = load_world(_worlds(), name)
         found = list(problems(world, radius))
         found += blocked_starts(load_scenario(settings.mission_path(mission))) if mission else []
-    for line in (*found, *(f"note: {each}" for each in notes(world))):
+        told = list(notes(world))
+        if vehicle is not None:
+            told += blind_spots(world, vehicle, load_vehicle(_worlds().parent / "vehicles", vehicle))
+    for line in (*found, *(f"note: {each}" for each in told)):
         typer.echo(line)
     typer.echo(f"uvf: {counted(len(found), 'problem')}" if found else "uvf: nothing wrong")
     raise typer.Exit(1 if found else 0)
@@ -104,18 +112,25 @@ def world_new(
 
 @world_app.command("import")
 def world_import(
-    file: Annotated[Path, typer.Argument(help="A Gazebo .world or .sdf, or the yaml of a map.")],
+    file: Annotated[Path, typer.Argument(help="A Gazebo .world or .sdf, the yaml of a map, or heights: a GeoTIFF or a picture.")],
     name: Annotated[str, typer.Option(help="Of the new folder in worlds/.")],
     models: Annotated[list[Path] | None, typer.Option(help="Folders with Gazebo models.")] = None,
     height: Annotated[float, typer.Option(min=0.1, max=100.0, metavar="m", help="Of the walls of a map.")] = 2.0,
     upright: Annotated[bool, typer.Option("--upright", help="Turn meshes that say that y is up, which Gazebo does not.")] = False,
+    terrain: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(
+            metavar="m m m",
+            help="Take the file as heights: extent east, north, and from the darkest to the brightest.",
+        ),
+    ] = None,
     replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
 ) -> None:
-    """Import a Gazebo world or a map, with a note of what was left out."""
+    """Import a Gazebo world, a map or a terrain, with a note of what was left out."""
     from uvf.models.importing.worlds import Options, import_world, new_folder
 
     with bad_input_is_one_line():
-        path, lines = import_world(file, new_folder(_worlds(), name), Options(models or (), height, replace, upright))
+        path, lines = import_world(file, new_folder(_worlds(), name), Options(models or (), height, replace, upright, terrain))
     for line in lines:
         typer.echo(line)
     typer.echo(f"uvf: {path}; look at it with 'uvf world picture {name}' and 'uvf world check {name}'")

@@ -11,7 +11,7 @@ from uvf.maths.se2 import Pose2
 from uvf.models.scenario import Scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.world.file import WorldFile
-from uvf.models.world.geometry import FloorPlan, floor_plan, solids
+from uvf.models.world.geometry import FloorPlan, cell_size, floor_plan, solids
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.maps.grids import as_map
 from uvf.runtime.messages.maps.height_grids import heights_of
@@ -20,7 +20,7 @@ from uvf.slam.maps.quality import MapScore, score
 
 Floats = NDArray[np.float64]
 
-PLAN_CELL, MOST_CELLS = 0.02, 4_000_000
+PLAN_CELL = 0.02  # m
 """m, of the floor plan that maps are held against; in larger cells, so that it has no more than that many."""
 AT_ONCE = 20_000  # columns whose heights are looked at together
 ABOVE = 1000.0  # m, from where the world is looked at for its heights
@@ -84,8 +84,7 @@ def height_error(track: RecordedTrack) -> Finding:
 
 def true_plan(world: WorldFile) -> FloorPlan:
     """The floor plan that maps are held against."""
-    x_min, y_min, x_max, y_max = world.floor
-    return floor_plan(world, max(PLAN_CELL, float(np.sqrt((x_max - x_min) * (y_max - y_min) / MOST_CELLS))))
+    return floor_plan(world, cell_size(world, PLAN_CELL))
 
 
 def _score(message: Grid, track: RecordedTrack) -> MapScore:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from launch.worlds.report import RESOLUTION
 from uvf.maths.footprint import Footprint, footprint
@@ -16,7 +17,7 @@ from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.outline import ground_outline
 from uvf.models.world.file import WorldFile
 from uvf.models.world.footing import Footing
-from uvf.models.world.geometry import WALL, floor_plan, free_regions, things
+from uvf.models.world.geometry import WALL, cell_size, floor_plan, free_regions, things
 from uvf.models.world.terrain import Relief, relief
 from uvf.models.yaml_data import FileLocation
 
@@ -24,6 +25,7 @@ Floats = NDArray[np.float64]
 
 GAP = 0.02  # m, that still counts as standing on something
 SMALLEST_ROOM = 0.5  # m^2
+MOST_ROOMS = 8  # that are told one by one
 LARGEST_HOLLOW = 3.0  # m, side of a mesh that is a thing and no building
 LONGEST = 120.0  # s of the scripts that are looked at
 STEP = 0.1  # s
@@ -106,17 +108,26 @@ def _level(thing: Solid) -> bool:
 def _out_of_reach(world: WorldFile, radius: float) -> Iterator[str]:
     """All floor but the largest connected one, what lies about a closed building, and the hollows of meshes."""
     hollows = [b for t in things(world) if t.shape == "mesh" and ((b := _bounds(t))[1] - b[0])[:2].max() <= LARGEST_HOLLOW]
-    plan = floor_plan(world, RESOLUTION)
-    x, y = plan.centres()
-    for region in free_regions(plan, radius)[1:]:
-        if region[0].any() and region[-1].any() and region[:, 0].any() and region[:, -1].any():
+    plan = floor_plan(world, cell_size(world, RESOLUTION))
+    regions, (xs, ys), told, left = free_regions(plan, radius), plan.axes(), 0, 0.0
+    about = set(regions[0]) & set(regions[-1]) & set(regions[:, 0]) & set(regions[:, -1])
+    for number, window in enumerate(ndimage.find_objects(regions), 1):
+        region = regions[window] == number
+        area = float(region.sum()) * plan.resolution**2
+        if number == 1 or number in about or area < SMALLEST_ROOM:
             continue
-        area = float(region.sum()) * RESOLUTION**2
-        cells = np.column_stack((x[region], y[region]))
-        hollow = any((cells >= low[:2]).all() and (cells <= high[:2]).all() for low, high in hollows)
-        if area >= SMALLEST_ROOM and not hollow:
+        rows, columns = np.nonzero(region)
+        cells = np.column_stack((xs[window[1]][columns], ys[window[0]][rows]))
+        if any((cells >= low[:2]).all() and (cells <= high[:2]).all() for low, high in hollows):
+            continue
+        told += 1
+        if told <= MOST_ROOMS:
             at = cells.mean(axis=0)
             yield f"{area:.1f} m^2 of floor about ({at[0]:.1f}, {at[1]:.1f}) are out of reach for a radius of {radius:g} m"
+        else:
+            left += area
+    if told > MOST_ROOMS:
+        yield f"{told - MOST_ROOMS} more pieces of floor, {left:.1f} m^2 in all, are out of reach for a radius of {radius:g} m"
 
 
 def _crossings(things: list[Solid]) -> Iterator[str]:

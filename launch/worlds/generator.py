@@ -6,7 +6,7 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from uvf.models.importing.sdf.world import HOME
+from uvf.models.importing.heights import HOME
 from uvf.models.world.file import Box, Colour, Field, Wall, WorldFile
 from uvf.models.world.geometry import FloorPlan, floor_plan, reachable_floor
 

@@ -48,5 +48,5 @@ def figures(world: WorldFile) -> Iterator[str]:
 
 def largest_reachable(plan: FloorPlan, radius: float) -> Mask:
     """Mask (rows, columns) of the largest floor region that a round robot of ``radius`` [m] covers from one start."""
-    regions = free_regions(plan, radius)
-    return regions[0] if regions else np.zeros_like(plan.cells)
+    largest: Mask = free_regions(plan, radius) == 1
+    return largest

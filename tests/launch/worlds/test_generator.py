@@ -15,10 +15,10 @@ def test_a_robot_of_thirty_centimetres_reaches_every_room(rooms, seed):
     assert len(world.fields) == rooms
     assert world.boxes
     plan = floor_plan(world, 0.05)
-    regions = free_regions(plan, 0.3)
+    largest = free_regions(plan, 0.3) == 1
     for field in world.fields:
         (r0, c0), (r1, c1) = plan.cell(*field.area[:2]), plan.cell(*field.area[2:])
-        assert regions[0][r0:r1, c0:c1].mean() > 0.3
+        assert largest[r0:r1, c0:c1].mean() > 0.3
 
 
 def test_doors_are_at_least_ninety_centimetres_wide():

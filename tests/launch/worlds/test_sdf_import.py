@@ -1,5 +1,7 @@
 """Gazebo worlds as people write them: poses, frames, includes, saved states, shapes; and what is told of the rest."""
 
+import logging
+
 import numpy as np
 import pytest
 import trimesh
@@ -188,7 +190,7 @@ def test_shapes_keep_their_measures_and_those_that_cannot_be_had_are_told(tmp_pa
     assert egg.extents == pytest.approx(np.array((0.4, 0.6, 1.0)), rel=0.01)
     assert outline.is_watertight
     assert outline.volume == pytest.approx(1.5 * 1.5)
-    assert "(heightmap): m_field" in notes
+    assert "heightmaps not found, the ground is level instead: h.png" in notes
     assert "has no <size>" in notes
 
 
@@ -333,3 +335,7 @@ def test_what_touches_nothing_is_left_out_however_its_bits_are_written(tmp_path,
         tmp_path, model("solid", BOX.format("2 2 2"), "<pose>5 0 1 0 0 0</pose>") + model("ghost", ghost, "<pose>0 0 0.5 0 0 0</pose>")
     )
     assert len(world[0].boxes) == 1 + touches
+
+
+def test_the_reader_of_meshes_says_nothing_of_missing_textures():
+    assert not logging.getLogger(trimesh.__name__).isEnabledFor(logging.ERROR)

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se2 import transform
+from uvf.models.importing.heights import HOME
 from uvf.models.importing.notes import Notes
-from uvf.models.importing.sdf.world import HOME
 from uvf.models.world.file import Box, WorldFile
 from uvf.models.world.map_file import OCCUPIED_FROM, GridMap, load_map
 from uvf.models.yaml_data import BadInput

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from uvf.models.importing.heights import TIFF, terrain_world
 from uvf.models.importing.map_image import map_world
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.sdf.world import SdfImport
@@ -15,19 +16,21 @@ from uvf.models.world.writer import write_world
 from uvf.models.yaml_data import BadInput
 
 SDF = (".world", ".sdf")
-MAPS = (".yaml", ".yml", ".pgm", ".png")
+PICTURES = (".pgm", ".png")
+MAPS = (".yaml", ".yml", *PICTURES)
 
 
 class Options(NamedTuple):
     """Options of an import. models: folders with Gazebo models; height: of a map's walls [m]; replace: overwrite a world of that name.
 
-    upright: turn meshes that say that y is up.
+    upright: turn meshes that say that y is up; terrain: [m] east, north and height of a picture of heights, which is no map then.
     """
 
     models: Sequence[Path] = ()
     height: float = 2.0
     replace: bool = False
     upright: bool = False
+    terrain: tuple[float, float, float] | None = None
 
 
 def import_world(file: Path, folder: Path, options: Options) -> tuple[Path, list[str]]:
@@ -66,15 +69,22 @@ def _refuse_taken(folder: Path, replace: bool) -> None:
 
 
 def _read(file: Path, folder: Path, options: Options) -> tuple[WorldFile, list[str]]:
+    if file.suffix.lower() in TIFF or options.terrain is not None:
+        notes = Notes()
+        return terrain_world(file, folder, options.terrain, notes), notes.lines()
+    if file.suffix in PICTURES and not any(file.with_suffix(ending).is_file() for ending in (".yaml", ".yml")):
+        heights = "one of heights is taken with --terrain EAST NORTH HEIGHT, in metres"
+        raise BadInput(f"{file}: a picture of a map has {file.stem}.yaml beside it, which says its resolution and origin; {heights}")
     if file.suffix in MAPS:
         notes = Notes()
         return map_world(file, options.height, notes), notes.lines()
     if file.suffix not in SDF:
-        raise BadInput(f"{file}: files of this kind are not taken over; give {', '.join((*SDF, *MAPS))}")
+        raise BadInput(f"{file}: files of this kind are not taken over; give {', '.join((*SDF, *MAPS, *TIFF))}")
     reading = SdfImport(file, folder, options.models, options.upright)
     return reading.world(), reading.notes.lines()
 
 
 def _counts(world: WorldFile) -> str:
     groups = ("boxes", "cylinders", "spheres", "meshes")
-    return "taken over: " + ", ".join(f"{len(getattr(world, group))} {group}" for group in groups)
+    counts = [f"{len(getattr(world, group))} {group}" for group in groups]
+    return "taken over: " + ", ".join([*(["terrain"] if world.terrain is not None else []), *counts])

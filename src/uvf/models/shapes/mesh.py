@@ -1,5 +1,6 @@
 """Shapes as triangles and as points: for pictures and for measuring how far a body reaches."""
 
+import logging
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from uvf.models.yaml_data import BadInput
 Floats = NDArray[np.float64]
 FORMATS = (".stl", ".obj")  # what every engine reads alike: no units, no axes of their own
 ROUND = 48  # sides of a circle
+logging.getLogger("trimesh").setLevel(logging.CRITICAL)  # it tells of every missing texture, with a trace
 
 
 def placed(solid: Solid, frame_from_link: Transform) -> Solid:

@@ -54,6 +54,7 @@ class _Face(NamedTuple):
     rows: NDArray[np.intp]
     columns: NDArray[np.intp]
     heights: Floats
+    lowest: float
     slope: float
 
 
@@ -63,10 +64,11 @@ def drivable(solids: Solids, xs: Floats, ys: Floats, relief: Relief | None = Non
     ground = DrivableGround(height, slope, np.zeros(len(solids.kinds), dtype=np.bool_))
     rastered = [(owner, corners, _raster(owner, corners, xs, ys)) for owner, corners in _upward(solids)]
     pending = [face for _, _, face in rastered if face is not None]
-    pending.sort(key=lambda face: float(face.heights.min()))
+    pending.sort(key=lambda face: face.lowest)
     resolution = float(xs[1] - xs[0]) if len(xs) > 1 else 1.0
     while True:
-        joined = [face for face in pending if _joins(face, ground, resolution)]
+        top = float(ground.height.max(initial=0.0)) + LEDGE + resolution
+        joined = [face for face in pending if face.lowest <= top and _joins(face, ground, resolution)]
         if not joined:
             break
         for face in joined:
@@ -127,7 +129,7 @@ def _raster(owner: int, corners: Floats, xs: Floats, ys: Floats) -> _Face | None
     gradient = -normal[:2] / normal[2]
     r, c = grid_rows[inside], grid_columns[inside]
     heights = corners[0, 2] + gradient[0] * (xs[c] - corners[0, 0]) + gradient[1] * (ys[r] - corners[0, 1])
-    return _Face(owner, r, c, heights, float(np.hypot(*gradient)))
+    return _Face(owner, r, c, heights, float(heights.min()), float(np.hypot(*gradient)))
 
 
 def _within(outline: Floats, x: Floats, y: Floats) -> Mask:
@@ -141,8 +143,6 @@ def _within(outline: Floats, x: Floats, y: Floats) -> Mask:
 
 def _joins(face: _Face, ground: DrivableGround, resolution: float) -> bool:
     """Whether one can drive onto the face from what is drivable, there or in a neighbouring cell."""
-    if face.heights.min() > ground.height.max() + LEDGE + resolution:
-        return False
     for dr, dc in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)):
         r = np.clip(face.rows + dr, 0, ground.height.shape[0] - 1)
         c = np.clip(face.columns + dc, 0, ground.height.shape[1] - 1)

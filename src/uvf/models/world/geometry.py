@@ -10,7 +10,7 @@ from scipy import ndimage
 
 from uvf.maths.footprint import Footprint, covered, footprint, segments
 from uvf.maths.rotations import from_euler, rotate
-from uvf.maths.solids import chosen
+from uvf.maths.solids import Solids, chosen
 from uvf.models.shapes.scene import still
 from uvf.models.shapes.solid import Keyframes, Solid
 from uvf.models.world.drivable import drivable
@@ -21,6 +21,8 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 WALL = "wall"  # every stretch of wall is called so
 GRAZE = 0.001  # m, lower than that nothing is bumped into
+BLOCK = 16  # cells a side, of which the ground's lowest and highest are known together
+MOST_CELLS = 4_000_000
 BAND = 0.05  # m, steps of height in which obstacles on ramps are looked for
 
 
@@ -129,13 +131,42 @@ def floor_plan(world: WorldFile, resolution: float, height: float = 0.2) -> Floo
     plan = empty_plan(world, resolution)
     parts = still(things(world))
     ground = drivable(parts, *plan.axes(), relief(world))
-    bulk = chosen(parts, ~ground.surface)
-    cells = ground.cliffs(resolution) | plan.under(footprint(bulk, GRAZE, height)) & (ground.height <= GRAZE)
-    for low in np.unique(np.floor(ground.height[ground.height > GRAZE] / BAND) * BAND):
-        shadows = footprint(bulk, low + BAND + GRAZE, low + BAND + height)
+    standing = above(plan, ground.height, chosen(parts, ~ground.surface), (GRAZE, height))
+    return replace(plan, cells=ground.cliffs(resolution) | standing)
+
+
+def above(plan: FloorPlan, ground: Floats, parts: Solids, span: tuple[float, float]) -> Mask:
+    """Cells (rows, columns) that hold any part of the primitives within a span [m] above the ground, whose height is known by cell."""
+    low, high = span
+    ranges = _ground_under(parts, ground, plan)
+    cells = plan.under(footprint(parts, low, high)) & (ground <= GRAZE)
+    for band in np.unique(np.floor(ground[ground > GRAZE] / BAND) * BAND):
+        about = (ranges[:, 0] <= band + BAND) & (ranges[:, 1] > band)
+        shadows = footprint(chosen(parts, about), band + BAND + low, band + BAND + high)
         if shadows.outlines or len(shadows.discs):
-            cells |= (ground.height > max(low, GRAZE)) & (ground.height <= low + BAND) & plan.under(shadows)
-    return replace(plan, cells=cells)
+            cells |= (ground > max(band, GRAZE)) & (ground <= band + BAND) & plan.under(shadows)
+    return cells
+
+
+def _ground_under(parts: Solids, heights: Floats, plan: FloorPlan) -> Floats:
+    """Lowest and highest ground (n, 2) [m] under the rectangle about each primitive, or somewhat more about it."""
+    rows, columns = heights.shape
+    blocks = np.pad(heights, ((0, -rows % BLOCK), (0, -columns % BLOCK)), mode="edge")
+    blocks = blocks.reshape(len(blocks) // BLOCK, BLOCK, -1, BLOCK)
+    lowest, highest = blocks.min(axis=(1, 3)), blocks.max(axis=(1, 3))
+    side, corner, last = BLOCK * plan.resolution, np.array((plan.x, plan.y)), np.array(lowest.shape[::-1]) - 1
+    first, end = (np.clip(np.floor((ends[:, :2] - corner) / side), 0, last).astype(np.int64) for ends in (parts.low, parts.high))
+    found = [
+        (lowest[b : d + 1, a : c + 1].min(), highest[b : d + 1, a : c + 1].max())
+        for (a, b), (c, d) in zip(first.tolist(), end.tolist(), strict=True)
+    ]
+    return np.array(found, dtype=np.float64).reshape(-1, 2)
+
+
+def cell_size(world: WorldFile, finest: float) -> float:
+    """Side [m] of the cells in which a world's floor is looked at: ``finest`` [m], or more of a floor that has too many of them."""
+    x_min, y_min, x_max, y_max = world.floor
+    return max(finest, float(np.sqrt((x_max - x_min) * (y_max - y_min) / MOST_CELLS)))
 
 
 def floor_segments(world: WorldFile, height: float) -> Floats:
@@ -177,11 +208,23 @@ def reachable_places(plan: FloorPlan, x: float, y: float, radius: float) -> Mask
     return places
 
 
-def free_regions(plan: FloorPlan, radius: float) -> list[Mask]:
-    """Each floor (rows, columns) that a round robot of ``radius`` [m] can cover from one start, the largest first."""
+def free_regions(plan: FloorPlan, radius: float) -> NDArray[np.int32]:
+    """Floors (rows, columns) that a round robot of ``radius`` [m] can cover from one start, numbered from 1 by size; 0: none of them.
+
+    What it could cover from two starts belongs to the nearer.
+    """
     labels = _where_it_fits(plan, radius)
-    regions = [_swept(plan, labels == label, radius) for label in range(1, int(labels.max()) + 1)]
-    return sorted(regions, key=lambda region: -int(region.sum()))
+    if not labels.any():
+        return labels
+    away, nearest = ndimage.distance_transform_edt(labels == 0, return_indices=True)
+    covered = np.where((away * plan.resolution <= radius) & ~plan.cells, labels[tuple(nearest)], 0)
+    sizes = np.bincount(covered.ravel())
+    sizes[0] = 0
+    number = np.zeros(len(sizes), dtype=np.int32)
+    number[np.argsort(-sizes, kind="stable")] = np.arange(1, len(sizes) + 1)
+    number[0] = 0
+    found: NDArray[np.int32] = number[covered]
+    return found
 
 
 def _where_it_fits(plan: FloorPlan, radius: float) -> NDArray[np.int32]:

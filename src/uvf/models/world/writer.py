@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 import yaml
 
-from uvf.models.world.file import Origin, WorldFile
+from uvf.models.world.file import Origin, Terrain, WorldFile
 from uvf.models.world.wind import Wind
 
 DECIMALS = {"latitude": 8, "longitude": 8, "magnetic_field": 9, "rpy": 6, "scale": 6}
@@ -31,6 +31,9 @@ def _lines(world: WorldFile, remarks: Sequence[str]) -> Iterator[str]:
         yield f"wind: {_flow(_plain(world.wind, Wind))}"
     yield f"magnetic_field: {_flow(_rounded(world.magnetic_field, 9))}  # T, ENU"
     yield f"ground_colour: {_flow(_rounded(world.ground_colour, 3))}"
+    if world.terrain is not None:
+        yield ""
+        yield f"terrain: {_flow(_plain(world.terrain, Terrain))}"
     for group in GROUPS:
         things = getattr(world, group)
         if things:

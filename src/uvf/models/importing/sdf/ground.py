@@ -8,12 +8,13 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.models.importing.heights import terrain_floor
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.sdf.shapes import Thing
 from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.scene import still
 from uvf.models.shapes.solid import Solid
-from uvf.models.world.file import LARGEST_FLOOR, Box, Colour, Cylinder, Field, Mesh, Origin, Sphere, WorldFile
+from uvf.models.world.file import LARGEST_FLOOR, Box, Colour, Cylinder, Field, Mesh, Origin, Sphere, Terrain, WorldFile
 from uvf.models.world.geometry import solids
 
 Floats = NDArray[np.float64]
@@ -71,6 +72,13 @@ class SdfGround:
             self._notes.add(f"the ground lies at {height:g} m; everything is moved by {-height:g} m so that it is z = 0")
             kept = [_moved(thing, -height) for thing in kept]
         return msgspec.structs.replace(_with(world, kept), floor=floor, fields=fields, ground_colour=colour or PALE)
+
+    def on_terrain(self, world: WorldFile, things: Sequence[Thing], terrain: Terrain, lowest: float) -> WorldFile:
+        """``world`` with the things on a terrain, moved so that its lowest, at ``lowest`` [m], is z = 0."""
+        if abs(lowest) > LEVEL:
+            self._notes.add(f"the terrain's lowest lies at {lowest:g} m; everything is moved by {-lowest:g} m so that it is z = 0")
+        moved = _with(world, [_moved(thing, -lowest) for thing in things])
+        return msgspec.structs.replace(moved, terrain=terrain, floor=terrain_floor(terrain, self._notes))
 
     def _storey(self, things: Sequence[Thing]) -> _Storey | None:
         """The wide level surface that carries most of the others; of several the one nearest to z = 0, where Gazebo lets robots begin."""

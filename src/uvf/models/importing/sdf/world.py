@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se3 import IDENTITY, Transform, compose
+from uvf.models.importing.heights import HOME
 from uvf.models.importing.mesh_files import MeshStore
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.sdf.colours import visual_colour
 from uvf.models.importing.sdf.ground import SdfGround
+from uvf.models.importing.sdf.heightmap import Heightmaps
 from uvf.models.importing.sdf.models import Models, read_sdf
 from uvf.models.importing.sdf.poses import Scope, numbers, relative_to, transform
 from uvf.models.importing.sdf.shapes import Named, Shapes, Thing, is_level
@@ -23,8 +25,6 @@ from uvf.models.yaml_data import BadInput
 
 Floats = NDArray[np.float64]
 
-HOME = Origin(40.77, 14.79, 300.0)
-"""Where worlds lie that do not say it: the University of Salerno."""
 VEHICLE_PLUGIN = re.compile(
     r"(diff|ackermann|velocity|mecanum|tricycle).?(drive|steer|control)|skid.?steer|planar.?move|multicopter|quadrotor", re.I
 )
@@ -58,6 +58,7 @@ class SdfImport:
         self._models = Models(path, searched, self.notes)
         self._shapes = Shapes(MeshStore(folder, self.notes, upright), self._models.find, self.notes)
         self._planes: list[tuple[float, Colour | None]] = []
+        self._heightmaps = Heightmaps(folder, self._models.find, self.notes)
         self._names: set[str] = set()
         self._states: dict[str, ModelState] = {}
 
@@ -80,11 +81,14 @@ class SdfImport:
             if model.get("name") not in gone
             for thing in self._model(self._placed(model, scope, ("", IDENTITY)))
         ]
-        if has_models and not things and not self._planes:
+        if has_models and not things and not self._planes and self._heightmaps.terrain is None:
             raise BadInput(f"{self._path}: nothing in it can be taken over{self._why()}")
         first = element.find("model")
         about = f"Imported from {self._path.name}: {element.get('name') or ('' if first is None else first.get('name'))}."
-        return SdfGround(self._folder, self.notes).levelled(self._settings(element, about), things, self._planes)
+        ground, settings = SdfGround(self._folder, self.notes), self._settings(element, about)
+        if self._heightmaps.terrain is not None:
+            return ground.on_terrain(settings, things, self._heightmaps.terrain, self._heightmaps.lowest)
+        return ground.levelled(settings, things, self._planes)
 
     def _why(self) -> str:
         said = self.notes.lines()
@@ -133,6 +137,10 @@ class SdfImport:
         plane = geometry.find("plane")
         if plane is not None and is_level(plane, at):
             self._planes.append((float(at.translation[2]), colour))
+            return
+        heightmap = geometry.find("heightmap")
+        if heightmap is not None:
+            self._heightmaps.take(heightmap, at, name)
             return
         yield from self._shapes.things(geometry, at, Named(name, colour, model.state.scale))
 

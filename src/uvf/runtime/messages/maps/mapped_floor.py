@@ -7,7 +7,7 @@ from uvf.maths.se2 import Pose2
 from uvf.models.scenario import MissionVehicle
 from uvf.models.urdf.outline import ground_outline
 from uvf.models.world.file import WorldFile
-from uvf.models.world.geometry import floor_plan
+from uvf.models.world.geometry import cell_size, floor_plan
 from uvf.models.world.reach import covered_floor
 from uvf.runtime.messages.convert import occupancy_cells
 
@@ -20,7 +20,7 @@ class MappedFloor:
 
     def __init__(self, world: WorldFile, member: MissionVehicle) -> None:
         start = member.entry.start
-        plan = floor_plan(world, RESOLUTION)
+        plan = floor_plan(world, cell_size(world, RESOLUTION))
         x, y = plan.centres()
         body = member.file.ground
         if body is None:
