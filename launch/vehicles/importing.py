@@ -33,6 +33,7 @@ from uvf.models.urdf.writer import urdf_text
 from uvf.models.yaml_data import BadInput
 
 NOTES = "import.txt"
+KINDS = (".urdf", ".xacro", ".sdf", ".world", ".xml")
 SPEED, ACCELERATION = 0.5, 0.5  # m/s and m/s^2, where nothing is stated
 TRACTION = 2.5  # m/s^2
 STEERING_RATE = 2.0  # rad/s
@@ -62,6 +63,8 @@ def import_vehicle(source: Path, folder: Path, values: XacroValues = NO_VALUES) 
 def _read(source: Path, values: XacroValues) -> Foreign:
     if not source.is_file():
         raise BadInput(f"{source}: no such file; give a .urdf, .xacro or .sdf, or the .xml of a JSBSim aircraft")
+    if source.suffix.lower() not in KINDS and not source.read_bytes()[:200].lstrip().startswith(b"<"):
+        raise BadInput(f"{source}: files of this kind are not taken over; give a .urdf, .xacro or .sdf, or the .xml of a JSBSim aircraft")
     return read_foreign_sdf(source) if _is_sdf(source) else read_foreign_urdf(source, values)
 
 

@@ -13,6 +13,7 @@ from uvf.maths.rotations import rotate
 from uvf.maths.wheels.scrubbing import scrubbing, shared_loads
 from uvf.maths.wheels.steered import wheel_steering
 from uvf.models.checks.sensor_rules import sensor_faults, sensor_notes
+from uvf.models.checks.size_rules import size_faults
 from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.inertia import whole
@@ -91,6 +92,7 @@ def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
             *_speed_faults(file.ground, ground),
             *_outline_faults(body, ground),
             *_balance_faults(body),
+            *size_faults(model, body.poses),
             *sensor_faults(model, file.sensors, body.poses, FileLocation(str(yaml), ("sensors",))),
         ]
     except BadInput as error:

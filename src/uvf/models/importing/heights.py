@@ -14,6 +14,7 @@ from scipy import ndimage
 
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.importing.notes import Notes
+from uvf.models.lfs_pointer import refuse_pointer
 from uvf.models.world.file import Origin, Terrain, WorldFile
 from uvf.models.world.terrain import FINEST
 from uvf.models.yaml_data import BadInput
@@ -51,6 +52,7 @@ class HeightGrid:
 
 def read_heights(path: Path, notes: Notes) -> HeightGrid:
     """The heights of a picture or an elevation model. Raises BadInput for what cannot be read."""
+    refuse_pointer(path)
     try:
         with Image.open(path) as picture:
             tags: dict[int, Any] = dict(getattr(picture, "tag_v2", {}))

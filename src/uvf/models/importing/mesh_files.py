@@ -9,12 +9,14 @@ import trimesh
 from numpy.typing import NDArray
 
 from uvf.models.importing.notes import Notes
+from uvf.models.lfs_pointer import refuse_pointer
 from uvf.models.world.file import Colour
 from uvf.models.yaml_data import BadInput
 
 Floats = NDArray[np.float64]
 
 FORMATS = (".dae", ".stl", ".obj", ".glb", ".gltf", ".ply", ".off")
+FLATTEST = 1e-9  # of a scale
 HEAVY = 50_000  # triangles
 Z_FROM_Y = np.array(((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)))
 Z_FROM_X = np.array(((0.0, -1.0, 0.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)))
@@ -73,6 +75,7 @@ class MeshStore:
     def _load(self, source: Path, wanted: RequestedMesh) -> Any:
         if source.suffix.lower() not in FORMATS:
             raise BadInput(f"{source}: meshes of this kind are not read; export it as STL, OBJ or DAE")
+        refuse_pointer(source)
         try:
             scene = trimesh.load_scene(source)
             whole = self._part(scene, wanted.submesh, source).to_mesh()
@@ -81,6 +84,8 @@ class MeshStore:
             raise BadInput(f"{source}: cannot be read as a mesh: {' '.join(str(error).split())}; export it anew") from error
         if len(whole.faces) == 0:
             raise BadInput(f"{source}: no triangles in it")
+        if min(abs(side) for side in wanted.scale) < FLATTEST:
+            raise BadInput(f"{source}: a scale of {' '.join(f'{side:g}' for side in wanted.scale)} leaves nothing of it")
         whole.apply_transform(metres)
         if wanted.centred:
             whole.apply_translation(-whole.bounds.mean(axis=0))

@@ -25,6 +25,7 @@ SEVERAL = {"sonar": "sonars", "range": "rangefinders"}
 """Kinds of which a vehicle may have any number, and their sections."""
 LEVEL, FAR = 0.99, 30.0  # of the axis' z, and m
 NARROW, FEW = 0.6, 30  # rad and beams, below which rays are the cone of one reading
+FIGURES = ("samples", "resolution", "min_angle", "max_angle", "min", "max", "stddev", "update_rate", "horizontal_fov", "width", "height")
 LINK_KINDS = {"lidar": "ray", "imu": "imu", "camera": "camera"}
 
 
@@ -32,6 +33,7 @@ def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> S
     """The ``sensors`` section of a vehicle file: what the robot carries, what its links' names tell of, and encoders, which all have."""
     section: Section = {}
     for sensor in sorted((*foreign.sensors, *_by_names(foreign)), key=lambda each: _rank(each, base_from_link)):
+        _tell_odd(sensor, foreign)
         kind, make = _kind(sensor)
         if make is None or sensor.link not in base_from_link:
             foreign.notes.add("sensors of a kind that is not simulated, dropped", f"{sensor.kind} on {sensor.link}")
@@ -132,6 +134,18 @@ def _number(sensor: ForeignSensor, way: str, default: float) -> float:
     return default
 
 
+def _tell_odd(sensor: ForeignSensor, foreign: Foreign) -> None:
+    """Figures of which a common one is taken."""
+    for tag in sensor.element.iter(*FIGURES) if sensor.element is not None else ():
+        text = (tag.text or "").strip()
+        try:
+            is_number = bool(np.isfinite(float(text or "0")))
+        except ValueError:
+            is_number = False
+        if not is_number or (tag.tag == "samples" and float(text or "1") <= 0):
+            foreign.notes.add("figures of sensors that cannot be, taken as of a common one", f"{tag.tag} {text} of {sensor.link}")
+
+
 def _rate(sensor: ForeignSensor, default: float, fastest: float, foreign: Foreign) -> float:
     rate = _number(sensor, "update_rate", default) or default
     if rate > fastest:
@@ -142,7 +156,7 @@ def _rate(sensor: ForeignSensor, default: float, fastest: float, foreign: Foreig
 def _fan(sensor: ForeignSensor) -> tuple[float, float]:
     """Beams of a level row, and the angle [rad] over which they lie."""
     beams = _number(sensor, "horizontal/samples", 360) * _number(sensor, "horizontal/resolution", 1.0)
-    return beams, _number(sensor, "horizontal/max_angle", 2 * np.pi) - _number(sensor, "horizontal/min_angle", 0.0)
+    return beams if beams > 0 else 360.0, _number(sensor, "horizontal/max_angle", 2 * np.pi) - _number(sensor, "horizontal/min_angle", 0.0)
 
 
 def _lidar(sensor: ForeignSensor, foreign: Foreign) -> Section:

@@ -44,7 +44,10 @@ def import_world(file: Path, folder: Path, options: Options) -> tuple[Path, list
         made.mkdir()
         world, notes = _read(file, made, options)
         written = write_world(world, made, [f"note: {note}" for note in notes])
-        load_world(made.parent, made.name)
+        try:
+            load_world(made.parent, made.name)
+        except BadInput as error:
+            raise BadInput(f"{file}: {str(error).rpartition('world.yaml:')[2].partition(': ')[2]}") from error
         make_room(folder, options.replace)
         made.rename(folder)
     return folder / written.name, [*(f"note: {note}" for note in notes), _counts(world)]

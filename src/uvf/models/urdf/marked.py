@@ -5,6 +5,7 @@ from typing import Any
 
 from lxml import etree
 
+from uvf.models.lfs_pointer import refuse_pointer
 from uvf.models.yaml_data import BadInput
 
 LINE = "uvf_line"
@@ -15,6 +16,7 @@ MARKED = ("link", "joint", "material")
 
 def parsed(path: Path) -> Any:
     """Root element of an XML file. Raises BadInput."""
+    refuse_pointer(path)
     try:
         return etree.fromstring(path.read_bytes())
     except etree.XMLSyntaxError as error:

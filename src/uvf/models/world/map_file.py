@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from uvf.maths.se2 import Pose2
+from uvf.models.lfs_pointer import refuse_pointer
 from uvf.models.whole_file import write_whole
 from uvf.models.yaml_data import BadInput, load_yaml, nearest
 
@@ -149,6 +150,7 @@ def _pixels(picture: Path) -> NDArray[Any]:
     """(rows, columns[, 3 or 4]) brightness, or colours, or those and the opacity, as they are in the picture: of 8 or of 16 bits."""
     if picture.exists() and not picture.is_file():  # a pipe would never be opened
         raise BadInput(f"{picture}: cannot be read as a picture: it is no file; give a PGM or PNG")
+    refuse_pointer(picture)
     try:
         with _bomb_is_error(), Image.open(picture) as image:
             columns, rows = image.size

@@ -12,6 +12,7 @@ from lxml import etree
 
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.sdf.poses import FILE, place_of
+from uvf.models.lfs_pointer import refuse_pointer
 from uvf.models.yaml_data import BadInput
 
 PATHS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH")
@@ -23,6 +24,7 @@ PARENTS_SEARCHED = 4
 
 def read_sdf(path: Path) -> Any:
     """The root element of an SDF file. Raises BadInput."""
+    refuse_pointer(path)
     try:
         root = etree.fromstring(path.read_bytes(), etree.XMLParser(remove_comments=True, remove_pis=True, resolve_entities=False))
     except OSError as error:

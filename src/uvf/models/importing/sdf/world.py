@@ -16,7 +16,7 @@ from uvf.models.importing.sdf.colours import visual_colour
 from uvf.models.importing.sdf.ground import SdfGround
 from uvf.models.importing.sdf.heightmap import Heightmaps
 from uvf.models.importing.sdf.models import Models, read_sdf
-from uvf.models.importing.sdf.poses import Scope, numbers, relative_to, transform
+from uvf.models.importing.sdf.poses import Scope, numbers, place_of, relative_to, transform
 from uvf.models.importing.sdf.shapes import Named, Shapes, Thing, is_level
 from uvf.models.importing.sdf.state import NOTHING_SAVED, ModelState, deleted, saved_states
 from uvf.models.world.file import Colour, Origin, WorldFile
@@ -173,7 +173,10 @@ class SdfImport:
         if place is None:
             self.notes.add("the file does not say where on Earth it lies: set 'origin'")
         else:
-            origin = Origin(*(float(place.findtext(tag) or 0.0) for tag in ("latitude_deg", "longitude_deg", "elevation")))
+            latitude, longitude, altitude = (_figure(place, tag) for tag in ("latitude_deg", "longitude_deg", "elevation"))
+            if abs(latitude) > 90.0 or abs(longitude) > 180.0:
+                raise BadInput(f"{place_of(place)}: {latitude:g}, {longitude:g} deg is no place on Earth; mend <spherical_coordinates>")
+            origin = Origin(latitude, longitude, altitude)
         gravity = world.find("gravity")
         if gravity is not None and abs(numbers(gravity, 3)[2] + 9.81) > 0.05:
             self.notes.add("gravity is 9.81 m/s^2 here, whatever the file says")
@@ -191,6 +194,11 @@ class SdfImport:
         for tag, reason in DROPPED.items():
             for element in world.iter(tag):
                 self.notes.add(reason, element.get("name") or element.get("filename") or tag)
+
+
+def _figure(place: Any, tag: str) -> float:
+    element = place.find(tag)
+    return float(numbers(element, 1)[0]) if element is not None else 0.0
 
 
 def _true(text: str | None) -> bool:

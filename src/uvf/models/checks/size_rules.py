@@ -1,0 +1,47 @@
+"""Measures and masses that no ground vehicle has: of files in millimetres or grams."""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.se3 import Transform
+from uvf.models.shapes.mesh import placed, reach
+from uvf.models.urdf.robot import Link, UrdfModel
+
+LARGEST = 20.0  # m
+HEAVIEST = 20_000.0  # kg/m^3 of the box about a link: of gold
+SMALLEST = 1e-6  # m^3, below which a box is that of a sheet
+SIDES: NDArray[np.float64] = np.vstack((np.eye(3), -np.eye(3)))
+
+
+def size_faults(model: UrdfModel, poses: Mapping[str, Transform]) -> Iterator[str]:
+    """A vehicle larger than any, and links that are heavier than their measures allow."""
+    farthest = [extent for name in poses if (extent := _extents(model.links[name], poses[name])) is not None]
+    if farthest:
+        across = np.max([low_high[0] for low_high in farthest], axis=0) - np.min([low_high[1] for low_high in farthest], axis=0)
+        if across.max() > LARGEST:
+            longest = across.max()
+            yield f"{model.path}: the vehicle is {longest:.4g} m across; give metres (if these are millimetres: {longest / 1000:.4g} m)"
+    for name in poses:
+        yield from _heavy(model, model.links[name])
+
+
+def _heavy(model: UrdfModel, link: Link) -> Iterator[str]:
+    still = Transform(np.array((1.0, 0.0, 0.0, 0.0)), np.zeros(3))
+    extents = _extents(link, still)
+    if link.inertial is None or extents is None:
+        return
+    volume, mass = float(np.prod(extents[0] - extents[1])), link.inertial.mass
+    if volume > SMALLEST and mass > HEAVIEST * volume:
+        where = f"{model.path}:{link.line}" if link.line else str(model.path)
+        yield f"{where}: link '{link.name}' weighs {mass:.4g} kg in a box of {1000 * volume:.3g} l, more than gold would; give kilograms"
+
+
+def _extents(link: Link, frame_from_link: Transform) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Highest and lowest corner (3,) [m] of the box about a link's shapes; None where it has none."""
+    solids = [placed(solid, frame_from_link) for solid in (*link.collisions, *link.visuals)]
+    if not solids:
+        return None
+    found = np.max([reach(solid, SIDES) for solid in solids], axis=0)
+    return found[:3], -found[3:]
