@@ -17,7 +17,7 @@ from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.outline import ground_outline
 from uvf.models.world.file import WorldFile
 from uvf.models.world.footing import Footing
-from uvf.models.world.geometry import WALL, cell_size, floor_plan, free_regions, things
+from uvf.models.world.geometry import WALL, around, cell_size, floor_plan, free_regions, things
 from uvf.models.world.terrain import Relief, relief
 from uvf.models.yaml_data import FileLocation
 
@@ -110,7 +110,7 @@ def _out_of_reach(world: WorldFile, radius: float) -> Iterator[str]:
     hollows = [b for t in things(world) if t.shape == "mesh" and ((b := _bounds(t))[1] - b[0])[:2].max() <= LARGEST_HOLLOW]
     plan = floor_plan(world, cell_size(world, RESOLUTION))
     regions, (xs, ys), told, left = free_regions(plan, radius), plan.axes(), 0, 0.0
-    about = set(regions[0]) & set(regions[-1]) & set(regions[:, 0]) & set(regions[:, -1])
+    about = around(regions)
     for number, window in enumerate(ndimage.find_objects(regions), 1):
         region = regions[window] == number
         area = float(region.sum()) * plan.resolution**2

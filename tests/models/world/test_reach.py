@@ -6,7 +6,7 @@ import pytest
 from uvf.maths.se2 import Pose2
 from uvf.models.world.file import Box, Cylinder, Origin, WorldFile
 from uvf.models.world.footing import Footing
-from uvf.models.world.geometry import floor_plan, reachable_floor
+from uvf.models.world.geometry import around, floor_plan, free_regions, reachable_floor
 from uvf.models.world.reach import covered_floor
 
 LONG = np.array(((0.5, 0.15), (-0.3, 0.15), (-0.3, -0.15), (0.5, -0.15)))[::-1]
@@ -70,3 +70,17 @@ def test_a_start_is_not_free_where_a_corner_reaches_into_something():
     assert not post.is_free(Pose2(0.0, 0.0, 0.0), LONG)
     assert post.is_free(Pose2(0.0, 0.0, 1.0), LONG)
     assert not post.is_free(Pose2(0.6, 0.05, 1.0), LONG)
+
+
+def test_the_floor_of_a_closed_building_counts_before_what_lies_about_it_unless_it_is_small():
+    def largest(side):
+        ways = ((1, 0), (-1, 0), (0, 1), (0, -1))
+        middles = [(x * side / 2, y * side / 2, 0.5) for x, y in ways]
+        sizes = [(side * abs(y) + 0.1, side * abs(x) + 0.1, 1.0) for x, y in ways]
+        ring = [Box(f"wall_{i}", *each) for i, each in enumerate(zip(middles, sizes, strict=True))]
+        plan = floor_plan(WorldFile(about="test", origin=Origin(0.0, 0.0), floor=(-4.0, -4.0, 4.0, 4.0), boxes=ring), 0.05)
+        regions = free_regions(plan, 0.1)
+        return bool(regions[plan.cell(0.0, 0.0)] == 1), around(regions)
+
+    assert largest(5.0) == (True, {2})
+    assert largest(1.5) == (False, {1})

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from uvf.maths.rotations import rotate, to_euler
-from uvf.maths.se3 import Transform, compose
+from uvf.maths.se3 import Transform, apply, compose
 from uvf.models.importing.robot import Foreign, ForeignSensor
+from uvf.models.shapes.mesh import triangles
 
 Section = dict[str, Any]
 
@@ -16,6 +17,8 @@ FASTEST_CAMERA = 5.0
 MOST_BEAMS = 4096
 LIDARS = ("ray", "gpu_ray", "lidar", "gpu_lidar")
 CAMERAS = ("camera", "depth", "depth_camera", "rgbd", "rgbd_camera", "wideanglecamera", "multicamera")
+BUMPERS = ("contact", "bumper")
+LEAST_GAP, LEAST_SECTOR = 0.5, 0.05  # rad
 NAMES = {
     "lidar": ("laser", "lidar", "scan", "hokuyo", "rplidar", "lds", "velodyne", "sick"),
     "imu": ("imu",),
@@ -34,6 +37,9 @@ def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> S
     section: Section = {}
     for sensor in sorted((*foreign.sensors, *_by_names(foreign)), key=lambda each: _rank(each, base_from_link)):
         _tell_odd(sensor, foreign)
+        if sensor.kind.lower() in BUMPERS and sensor.link in base_from_link:
+            section.setdefault("bumpers", []).append(_bumper(sensor.link, foreign, base_from_link[sensor.link]))
+            continue
         kind, make = _kind(sensor)
         if make is None or sensor.link not in base_from_link:
             foreign.notes.add("sensors of a kind that is not simulated, dropped", f"{sensor.kind} on {sensor.link}")
@@ -66,6 +72,21 @@ def _rank(sensor: ForeignSensor, base_from_link: dict[str, Transform]) -> float:
     beams, fan = _fan(sensor)
     area = fan * min(_number(sensor, "range/max", 10.0), FAR) ** 2 * min(beams, 360)
     return -area if _is_level(compose(base_from_link[sensor.link], sensor.link_from_sensor)) else -1e-9
+
+
+def _bumper(link: str, foreign: Foreign, base_from_link: Transform) -> Section:
+    """The sector, as seen from base_link, that the shapes of the link take; all round where they have none."""
+    shapes = foreign.model.links[link].collisions or foreign.model.links[link].visuals
+    corners = [apply(base_from_link, triangles(shape)[0])[:, :2] for shape in shapes]
+    x, y = np.concatenate([np.zeros((0, 2)), *corners]).T
+    bearings = np.sort(np.arctan2(y, x))
+    gaps = np.diff(bearings, append=bearings[:1] + 2 * np.pi)
+    if not len(gaps) or gaps.max() < LEAST_GAP:
+        return {"name": link, "angle_min": -3.1416, "angle_max": 3.1416}
+    after = int(np.argmax(gaps))
+    first = float(bearings[(after + 1) % len(bearings)])
+    width = max(2 * np.pi - float(gaps[after]), LEAST_SECTOR)
+    return {"name": link, "angle_min": round(first, 4), "angle_max": round(first + width, 4)}
 
 
 def _is_level(base_from_sensor: Transform) -> bool:

@@ -23,6 +23,8 @@ WALL = "wall"  # every stretch of wall is called so
 GRAZE = 0.001  # m, lower than that nothing is bumped into
 BLOCK = 16  # cells a side, of which the ground's lowest and highest are known together
 MOST_CELLS = 4_000_000
+BESIDE_BUILDING = 0.25
+"""What a square metre about a building counts beside one in it."""
 BAND = 0.05  # m, steps of height in which obstacles on ramps are looked for
 
 
@@ -211,20 +213,28 @@ def reachable_places(plan: FloorPlan, x: float, y: float, radius: float) -> Mask
 def free_regions(plan: FloorPlan, radius: float) -> NDArray[np.int32]:
     """Floors (rows, columns) that a round robot of ``radius`` [m] can cover from one start, numbered from 1 by size; 0: none of them.
 
-    What it could cover from two starts belongs to the nearer.
+    What it could cover from two starts belongs to the nearer. What lies about a closed building comes after the building's largest
+    floor, unless that is small beside it.
     """
     labels = _where_it_fits(plan, radius)
     if not labels.any():
         return labels
     away, nearest = ndimage.distance_transform_edt(labels == 0, return_indices=True)
     covered = np.where((away * plan.resolution <= radius) & ~plan.cells, labels[tuple(nearest)], 0)
-    sizes = np.bincount(covered.ravel())
-    sizes[0] = 0
+    sizes = np.bincount(covered.ravel()).astype(np.float64)
+    sizes[0] = 0.0
+    sizes[list(around(covered))] *= BESIDE_BUILDING
     number = np.zeros(len(sizes), dtype=np.int32)
     number[np.argsort(-sizes, kind="stable")] = np.arange(1, len(sizes) + 1)
     number[0] = 0
     found: NDArray[np.int32] = number[covered]
     return found
+
+
+def around(regions: NDArray[np.int32]) -> set[int]:
+    """Numbers of the regions that reach to all four sides: what lies about a closed building."""
+    sides = (regions[0], regions[-1], regions[:, 0], regions[:, -1])
+    return set.intersection(*(set(np.unique(side).tolist()) for side in sides)) - {0}
 
 
 def _where_it_fits(plan: FloorPlan, radius: float) -> NDArray[np.int32]:
