@@ -8,6 +8,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
+from uvf.models.importing.mesh_colours import colour_groups, mean_colour
 from uvf.models.importing.notes import Notes
 from uvf.models.lfs_pointer import refuse_pointer
 from uvf.models.world.file import Colour
@@ -43,6 +44,7 @@ class MeshStore:
         self._notes = notes
         self._written: dict[tuple[Path, RequestedMesh], str] = {}
         self._colours: dict[Path, Colour | None] = {}
+        self._parts: dict[Path, list[tuple[Any, Colour | None]]] = {}
 
     def convert(self, source: Path, wanted: RequestedMesh) -> str:
         """Copies ``source`` as an STL file; returns its name in the world's folder. Raises BadInput when it cannot be read."""
@@ -53,11 +55,31 @@ class MeshStore:
             self._written[key] = self.write(loaded, source.stem + (f"_{wanted.submesh}" if wanted.submesh else ""))
         return self._written[key]
 
+    def by_colour(self, source: Path, wanted: RequestedMesh) -> list[tuple[str, Colour | None]]:
+        """The same in one file for each of its colours, pictures by their few main ones; of a file without colours one of no colour.
+
+        Raises BadInput as ``convert``.
+        """
+        if source.resolve() not in self._parts:
+            self._load(source, wanted)
+            groups = colour_groups(trimesh.load_scene(source).dump())
+            self._parts[source.resolve()] = groups if len(groups) > 1 else []
+        parts, to = self._parts[source.resolve()], np.diag((*wanted.scale, 1.0)) @ self._metres_from_file(source)
+        if not parts:
+            return [(self.convert(source, wanted), self.colour(source))]
+        found: list[tuple[str, Colour | None]] = []
+        for k, (part, colour) in enumerate(parts, 1):
+            key = (source.resolve(), wanted._replace(submesh=f"colour {k}"))
+            if key not in self._written:
+                self._written[key] = self.write(part.copy().apply_transform(to), f"{source.stem}_{k}")
+            found.append((self._written[key], colour))
+        return found
+
     def colour(self, source: Path) -> Colour | None:
         """Mean colour of a mesh file; None when it has none or cannot be read."""
         if source not in self._colours:
             try:
-                self._colours[source] = _colour(trimesh.load_scene(source))
+                self._colours[source] = mean_colour(trimesh.load_scene(source))
             except UNREADABLE:
                 self._colours[source] = None
         return self._colours[source]
@@ -118,26 +140,3 @@ class MeshStore:
             if asset.upaxis in ("Y_UP", "X_UP") and not self._upright:
                 self._notes.add("meshes that say another axis than z is up, not turned, as in Gazebo (--upright turns them)", source.name)
         return to
-
-
-def _colour(scene: Any) -> Colour | None:
-    """Mean over all parts by area; a picture counts with its mean."""
-    found = [(part.area, rgb) for part in scene.geometry.values() if (rgb := _rgb(part.visual)) is not None]
-    total = sum(area for area, _ in found)
-    if not total > 0:
-        return None
-    r, g, b = (float(np.clip(sum(area * rgb[k] for area, rgb in found) / total, 0.0, 1.0)) for k in range(3))
-    return r, g, b
-
-
-def _rgb(visual: Any) -> Floats | None:
-    if not visual.defined:
-        return None
-    material = getattr(visual, "material", None)
-    picture = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
-    if picture is not None:
-        pixels: Floats = np.asarray(picture.convert("RGB").resize((16, 16)), dtype=np.float64).reshape(-1, 3)
-        mean: Floats = pixels.mean(axis=0) / 255
-        return mean
-    colour = getattr(material, "main_color", None) if material is not None else visual.main_color
-    return None if colour is None else np.array(colour[:3], dtype=np.float64) / 255

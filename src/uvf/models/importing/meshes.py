@@ -80,9 +80,11 @@ def _solid(solid: Solid, hull: bool, tools: Tools) -> Iterator[Solid]:
     if solid.mesh is None or not solid.mesh.is_file():
         notes.add("meshes that are missing", _uri(solid.mesh))
         return
+    wanted = RequestedMesh(scale=_scale(solid))
     try:
-        file = tools.folder / store.convert(solid.mesh, RequestedMesh(scale=_scale(solid)))
-        load_mesh(file)
+        files = [(store.convert(solid.mesh, wanted), None)] if hull or solid.colour != GREY else store.by_colour(solid.mesh, wanted)
+        for file, _ in files:
+            load_mesh(tools.folder / file)
     except BadInput as error:
         notes.add("meshes that cannot be read", str(error))
         return
@@ -91,9 +93,9 @@ def _solid(solid: Solid, hull: bool, tools: Tools) -> Iterator[Solid]:
         notes.add("meshes taken to be in millimetres, for one of them is larger than 8 m", solid.mesh.name)
         unit = 0.001
     if hull:
-        file = tools.folder / store.write(_hull(file), f"{solid.mesh.stem}_hull")
-    colour = (store.colour(solid.mesh) if solid.colour == GREY else None) or solid.colour
-    yield replace(solid, mesh=file, size=(unit, unit, unit), colour=colour)
+        files = [(store.write(_hull(tools.folder / files[0][0]), f"{solid.mesh.stem}_hull"), None)]
+    for file, colour in files:
+        yield replace(solid, mesh=tools.folder / file, size=(unit, unit, unit), colour=colour or solid.colour)
 
 
 def _uri(mesh: Path | None) -> str:
