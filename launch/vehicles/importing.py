@@ -14,11 +14,12 @@ import yaml
 from launch.vehicles.creation import check_new
 from launch.vehicles.importing_air import import_aircraft
 from uvf.maths.geodesy import GRAVITY
-from uvf.maths.se3 import compose
+from uvf.maths.se3 import apply, compose
 from uvf.models.importing.controllers import limits_of_controllers
 from uvf.models.importing.drive_wheels import DriveWheels, find_wheels
 from uvf.models.importing.jsbsim import jsbsim_model
 from uvf.models.importing.meshes import with_own_meshes
+from uvf.models.importing.omni_wheels import heading_of
 from uvf.models.importing.rebuilt import rebuilt, wheel_names
 from uvf.models.importing.robot import Foreign, StatedLimits
 from uvf.models.importing.sdf.robot import read_foreign_sdf
@@ -76,7 +77,7 @@ def _is_sdf(source: Path) -> bool:
 
 def _write(folder: Path, source: Path, foreign: Foreign, made: tuple[DriveWheels, UrdfModel]) -> list[str]:
     wheels, model = made
-    sides = f"{_named(wheels.left)} (left) and {_named(wheels.right)} (right)"
+    sides = _named(wheels.around) if wheels.around else f"{_named(wheels.left)} (left) and {_named(wheels.right)} (right)"
     foreign.notes.add(f"guessed: {sides} drive; wheel radius {wheels.radius:.4g} m, track {wheels.track:.4g} m")
     _compare(foreign, wheels)
     base_from_link = {name: compose(wheels.base_from_root, pose) for name, pose in foreign.model.link_poses().items()}
@@ -160,6 +161,8 @@ def _max_steering(wheels: DriveWheels, model: UrdfModel) -> float:
 
 
 def _drive(wheels: DriveWheels, model: UrdfModel) -> dict[str, Any]:
+    if wheels.kind == "omni":
+        return {"kind": "omni", "wheel_radius": round(wheels.radius, 6), "wheels": _ring(wheels)}
     joints = {side: [f"{name}_joint" for name in wheel_names(side, len(wheels.left))] for side in ("left", "right")}
     sizes = {"wheel_radius": round(wheels.radius, 6), "track": round(wheels.track, 6)}
     if wheels.kind == "differential":
@@ -178,6 +181,15 @@ def _drive(wheels: DriveWheels, model: UrdfModel) -> dict[str, Any]:
     if wheels.kind == "mecanum":
         return {"kind": "mecanum", **joints, **sizes, "wheelbase": round(wheels.wheelbase, 6)}
     return {"kind": "skid_steer", **joints, **sizes, "effective_track": round(wheels.turning_track, 4)}
+
+
+def _ring(wheels: DriveWheels) -> dict[str, dict[str, float]]:
+    """Where each omni wheel stands and rolls to, by its joint."""
+    found = {}
+    for name, wheel in zip(wheel_names("omni", len(wheels.around)), wheels.around, strict=True):
+        x, y, _ = apply(wheels.base_from_root, wheel.centre[None])[0].tolist()
+        found[f"{name}_joint"] = {"x": round(x, 5), "y": round(y, 5), "heading": round(heading_of(wheel.axis), 5)}
+    return found
 
 
 def _fastest_wheel(fastest: float, limits: StatedLimits, wheels: DriveWheels) -> float:

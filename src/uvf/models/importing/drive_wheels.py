@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.rotations import from_matrix
-from uvf.maths.se3 import Transform, apply, inverse
+from uvf.maths.se3 import IDENTITY, Transform, apply, inverse
 from uvf.maths.wheels.scrubbing import Scrubbing, scrubbing, shared_loads
+from uvf.models.importing.omni_wheels import meeting_point, ring_of
 from uvf.models.importing.robot import Foreign
 from uvf.models.importing.steered_wheels import car_of
 from uvf.models.importing.wheel_guess import CASTORS, Pair, WheelGuess, may_turn, shapes_below, wheel_on
@@ -52,6 +53,8 @@ class DriveWheels:
     turning_track: float
     kind: str = "differential"
     steered: Pair | None = None
+    around: tuple[WheelGuess, ...] = ()
+    """Of an omni drive, which has neither left nor right ones."""
 
     @property
     def wheelbase(self) -> float:
@@ -70,7 +73,7 @@ class DriveWheels:
     @property
     def driven(self) -> tuple[WheelGuess, ...]:
         """All of them, the left side first."""
-        return self.left + self.right
+        return self.left + self.right + self.around
 
     @property
     def radius(self) -> float:
@@ -79,7 +82,9 @@ class DriveWheels:
 
     @property
     def track(self) -> float:
-        """Mean distance between the wheels of a pair [m]."""
+        """Mean distance between the wheels of a pair [m]; of an omni drive, diameter of the ring of wheels."""
+        if self.around:
+            return self.turning_track
         return _track(self.left, self.right)
 
 
@@ -92,6 +97,8 @@ def find_wheels(foreign: Foreign) -> DriveWheels:
     model = foreign.model
     turning = [joint for joint in model.joints.values() if may_turn(joint, _is_called_wheel(joint))]
     wheels = [wheel for joint in turning if (wheel := wheel_on(model, joint)) is not None]
+    if ring := ring_of(wheels):
+        return _omni(ring, wheels, foreign)
     pairs = [(a, b) for a, b in combinations(wheels, 2) if _opposite(a, b)]
     if not pairs:
         found = ", ".join(w.joint.name for w in wheels) or "none"
@@ -107,6 +114,18 @@ def find_wheels(foreign: Foreign) -> DriveWheels:
     middle = np.mean([p.translation for p in model.link_poses().values()], axis=0)
     best = max(pairs, key=lambda pair: _score(pair, foreign, middle))
     return _oriented([best, *_more_pairs(best, pairs, foreign)], wheels, foreign)
+
+
+def _omni(ring: tuple[WheelGuess, ...], wheels: list[WheelGuess], foreign: Foreign) -> DriveWheels:
+    """base_link lies under the point in which the axes meet, x as in the file."""
+    names = ", ".join(wheel.joint.name for wheel in ring)
+    foreign.notes.add("omni wheels: rollers across each, so that it drives sideways, too", names)
+    middle, radius = meeting_point(ring), float(np.mean([wheel.radius for wheel in ring]))
+    root_from_base = Transform(IDENTITY.rotation, middle - (0.0, 0.0, radius))
+    diameter = 2 * float(np.mean([np.hypot(*(wheel.centre - middle)[:2]) for wheel in ring]))
+    below = {wheel.joint.name for wheel in wheels if any(wheel.joint.child in foreign.model.below(each.joint.child) for each in ring)}
+    others = tuple(wheel for wheel in wheels if wheel not in ring and wheel.joint.name not in below)
+    return DriveWheels((), (), others, inverse(root_from_base), diameter, "omni", around=ring)
 
 
 def with_steering(wheels: DriveWheels, steered: Pair) -> DriveWheels:

@@ -59,6 +59,8 @@ def rebuilt(foreign: Foreign, wheels: DriveWheels) -> UrdfModel:
     for side, several in (("left", wheels.left), ("right", wheels.right)):
         for name, wheel in zip(wheel_names(side, len(several)), several, strict=True):
             _add_wheel(parts, name, wheel, below[wheel.joint.name])
+    for name, wheel in zip(wheel_names("omni", len(wheels.around)), wheels.around, strict=True):
+        _add_wheel(parts, name, wheel, below[wheel.joint.name], axis=rotate(wheels.base_from_root.rotation, wheel.axis))
     if wheels.steered is not None:
         most = steered_most(foreign, wheels.steered)
         for side, wheel in zip(("left", "right"), wheels.steered, strict=True):
@@ -100,7 +102,7 @@ def _trunk(parts: _Parts, rest: list[str]) -> list[str]:
     """The links that become base_link: the root, an own base_link, and, where these weigh nothing, what carries the wheels."""
     trunk = [parts.model.roots[0], *([BASE] if BASE in rest else [])]
     if all(parts.model.links[n].inertial is None for n in trunk):
-        trunk.append(parts.wheels.left[0].joint.parent)
+        trunk.append(parts.wheels.driven[0].joint.parent)
     return [n for n in dict.fromkeys(trunk) if n in rest]
 
 
@@ -163,8 +165,11 @@ def _knuckle(foreign: Foreign, wheel: WheelGuess, turning: list[str], poses: dic
     return [n for n in foreign.model.below(joint.child) if n in poses and n not in turning]
 
 
-def _add_wheel(parts: _Parts, called: str, wheel: WheelGuess, names: list[str], parent: str = BASE) -> None:
-    """A link at the middle of the tread, its axes those of base_link, on a joint about y; ``parent`` stands there, too, or is the base."""
+def _add_wheel(parts: _Parts, called: str, wheel: WheelGuess, names: list[str], parent: str = BASE, axis: Floats = Y) -> None:
+    """A link at the middle of the tread, its axes those of base_link, on a joint about y or another ``axis``.
+
+    ``parent`` stands there, too, or is the base.
+    """
     centre = apply(parts.wheels.base_from_root, wheel.centre[None])[0]
     name = f"{called}_link"
     ball = Solid(name, "sphere", (wheel.radius,), np.zeros(3))
@@ -172,7 +177,7 @@ def _add_wheel(parts: _Parts, called: str, wheel: WheelGuess, names: list[str], 
     parts.links[name] = Link(name, masses, looks, (ball,))
     joint = f"{called}_joint"
     at = Transform(IDENTITY.rotation, centre) if parent == BASE else IDENTITY
-    parts.joints[joint] = Joint(joint, "continuous", parent, name, at, Y)
+    parts.joints[joint] = Joint(joint, "continuous", parent, name, at, axis)
 
 
 def _add_knuckle(parts: _Parts, called: str, wheel: WheelGuess, turned: tuple[list[str], float]) -> None:
