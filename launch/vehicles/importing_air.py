@@ -44,6 +44,8 @@ def import_aircraft(path: Path, folder: Path) -> list[str]:
         model = copy_model(path, made)
         try:
             data, lines = run_in_subprocess(_described, str(made), model)
+        except BadInput as error:
+            raise BadInput(str(error).replace(str(made / model / f"{model}.xml"), str(path))) from error
         except Died as error:
             raise BadInput(f"{path}: JSBSim ends the process with this model ({error}); mend the model") from error
         data["about"] = f"{path.stem}, imported from {path.name} of JSBSim"

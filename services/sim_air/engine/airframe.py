@@ -1,7 +1,10 @@
 """One aircraft in JSBSim: the only file that imports it; where a model begins and what it says of itself are files beside."""
 
+import io
 import os
+import re
 from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -288,10 +291,11 @@ def _load(folder: Path, path: Path, body: AirBody) -> jsbsim.FGFDMExec:
     try:
         with c_output_discarded(), with_gust_rates(path) as aircraft:
             loaded = fdm.load_model_with_paths(body.model, str(aircraft), "engine", "systems")
+            why = "" if loaded else _why_refused(folder, body.model, aircraft)
     except jsbsim.BaseError as error:
         raise _refusal(path, error) from error
     if not loaded:
-        raise BadInput(f"{path}: JSBSim refuses it; look at its <file=...> names, engine and sections")
+        raise BadInput(f"{path}{why or ': JSBSim refuses it; look at its <file=...> names, engine and sections'}")
     _check_properties(path, fdm, body)
     fdm.set_dt(1 / body.physics_hz)
     try:
@@ -300,6 +304,15 @@ def _load(folder: Path, path: Path, body: AirBody) -> jsbsim.FGFDMExec:
     except jsbsim.BaseError as error:
         raise _refusal(path, error) from error
     return fdm
+
+
+def _why_refused(folder: Path, model: str, aircraft: Path) -> str:
+    """What JSBSim writes when it does not load a model; "" where it does not say it."""
+    said = io.StringIO()
+    with redirect_stdout(said), redirect_stderr(said):  # it writes through Python
+        jsbsim.FGFDMExec(str(folder)).load_model_with_paths(model, str(aircraft), "engine", "systems")
+    found = re.search(r"In file [^\n]*: line \d+\s+(\S[^\n]*)", said.getvalue())  # of a copy in which the line is another
+    return "" if found is None else f": JSBSim refuses it: {' '.join(found[1].split())}"
 
 
 def _catalogue(fdm: jsbsim.FGFDMExec) -> list[str]:

@@ -79,3 +79,12 @@ def test_a_model_that_ends_the_process_is_one_line(tmp_path):
     model.write_text(text)
     with pytest.raises(BadInput, match=r"c172p\.xml: JSBSim ends the process with this model \(SIG[A-Z]+"):
         import_vehicle(model, tmp_path / "vehicles" / "x")
+
+
+def test_a_model_that_jsbsim_does_not_load_is_refused_with_its_reason_and_the_name_that_was_given(tmp_path):
+    model = shipped_copy(tmp_path, "c172p")
+    names = re.findall(r'<function name="(aero/coefficient/\w+)">', model.read_text())
+    model.write_text(model.read_text().replace(f'"{names[1]}"', f'"{names[0]}"'))
+    with pytest.raises(BadInput) as refused:
+        import_vehicle(model, tmp_path / "vehicles" / "x")
+    assert str(refused.value).startswith(f"{model}: JSBSim refuses it: Error loading aerodynamic function in {names[0]}")

@@ -36,6 +36,7 @@ MISTAKES = {
     "no inertia": (r"> 0\.8244 <", "> 0 <", "mass_balance: ixx is '0'; it must be a number above zero"),
     "an inertia that no body has": (r"> 1\.759 <", "> 7.1 <", "izz is 7.1, more than ixx + iyy = 1.9594; no body has such inertia"),
     "an unknown unit": ('unit="KG"', 'unit="STONE"', 'JSBSim refuses it: Supplied unit: "STONE" does not exist'),
+    "a function named twice": ("aero/total/CY", "aero/total/CD", "milvus.xml: JSBSim refuses it: Error loading aerodynamic function"),
     "an engine that is not there": ("milvus_motor", "milvus_moter", "no engine/milvus_moter.xml for the engine; did you mean 'milvus_m"),
 }
 
