@@ -13,6 +13,7 @@ import yaml
 
 from launch.vehicles.creation import check_new
 from launch.vehicles.importing_air import import_aircraft
+from launch.vehicles.trial_drive import turned_share
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.se3 import apply, compose
 from uvf.models.importing.controllers import limits_of_controllers
@@ -31,12 +32,14 @@ from uvf.models.shapes.mesh import placed, reach
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.urdf.source import NO_VALUES, XacroValues
 from uvf.models.urdf.writer import urdf_text
+from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
 
 NOTES = "import.txt"
 KINDS = (".urdf", ".xacro", ".sdf", ".world", ".xml")
 SPEED, ACCELERATION = 0.5, 0.5  # m/s and m/s^2, where nothing is stated
 TRACTION = 2.5  # m/s^2
+CALIBRATED = 0.015  # of a turn, from which on the effective track is measured
 STEERING_RATE = 2.0  # rad/s
 CAR_HZ = 400.0  # Hz of physics: with 200 the light wheels of cars hop when they brake in a curve
 MARGIN = 3.0  # of a motor's speed without load over the largest that is asked for
@@ -56,9 +59,31 @@ def import_vehicle(source: Path, folder: Path, values: XacroValues = NO_VALUES) 
         wheels = find_wheels(foreign)
         model = replace(rebuilt(foreign, wheels), name=folder.name)
         notes = _write(made, source, foreign, (wheels, model))
+        if wheels.kind == "skid_steer":
+            notes += _calibrated(made)
         folder.parent.mkdir(parents=True, exist_ok=True)
         shutil.copytree(made, folder)
     return notes
+
+
+def _calibrated(folder: Path) -> list[str]:
+    """Measures the effective track of skid steer by turning it in the simulator, where what bears the wheels tells it too roughly."""
+    path = folder / "vehicle.yaml"
+    try:
+        body = load_vehicle(folder.parent, folder.name).ground
+    except BadInput:
+        return []  # the check tells
+    share = turned_share(folder, body) if body is not None else 1.0
+    if not CALIBRATED < abs(share - 1.0) < 0.9:
+        return []
+    data = yaml.safe_load(path.read_text(encoding="utf-8"))
+    before = data["ground"]["drive"]["effective_track"]
+    data["ground"]["drive"]["effective_track"] = round(before / share, 4)
+    path.write_text(yaml.safe_dump(data, sort_keys=False, width=140), encoding="utf-8")
+    line = f"effective track measured by turning it in the simulator: {before / share:.3g} m instead of {before:.3g} m"
+    with (folder / NOTES).open("a", encoding="utf-8") as notes:
+        notes.write(f"- {line}\n")
+    return [line]
 
 
 def _read(source: Path, values: XacroValues) -> Foreign:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from launch.vehicles.aircraft_rules import aircraft_faults
+from launch.vehicles.trial_drive import trial_faults
 from services.sim_camera.build import camera_faults
 from services.sim_ground.build import rate_faults
 from uvf.models.checks.body_rules import body_faults, body_notes
@@ -61,6 +62,8 @@ def inspect(folder: Path) -> Inspection:
     urdf = _urdf(folder, found.file)
     if urdf is not None:
         _inspect_body(found, urdf)
+    if found.file is not None and found.file.ground is not None and not found.faults:
+        found.faults += trial_faults(folder, found.file.ground)
     return found
 
 

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from launch.commands import vehicle as vehicle_cli
 from launch.commands.vehicle import vehicle_app
 from launch.vehicles.inspection import inspect
-from tests.launch.vehicles.driving import drive
+from launch.vehicles.trial_drive import drive
 from tests.launch.vehicles.foreign_robots import gazebo_sdf
 from uvf.models.scenario import ROOT
 

@@ -8,7 +8,7 @@ import trimesh
 
 from launch.vehicles.importing import NOTES, import_vehicle
 from launch.vehicles.inspection import inspect
-from tests.launch.vehicles.driving import drive
+from launch.vehicles.trial_drive import drive
 from tests.launch.vehicles.foreign_robots import ROBOTS, import_one
 from uvf.models.shapes.mesh import triangles
 from uvf.models.urdf.model import load_urdf

@@ -7,7 +7,7 @@ import pytest
 
 from launch.vehicles.importing import import_vehicle
 from launch.vehicles.inspection import inspect
-from tests.launch.vehicles.driving import drive
+from launch.vehicles.trial_drive import drive
 from tests.launch.vehicles.foreign_robots import car, import_one
 from uvf.models.vehicle.file import load_vehicle
 
@@ -130,7 +130,7 @@ def test_a_wrong_effective_track_is_a_fault_that_names_the_right_one(tmp_path):
     path = tmp_path / "vehicles" / "it" / "vehicle.yaml"
     path.write_text(re.sub("effective_track: .*", "effective_track: 0.5", path.read_text()))
     (fault,) = inspect(path.parent).faults
-    assert "ground: drive: effective_track: 0.5 m, but with these masses and wheels it is 0.65" in fault
+    assert "ground: drive: effective_track: 0.5 m, but in the simulator it turns as with 0.6" in fault
 
 
 def test_castors_that_swivel_are_no_skid_steer(tmp_path):
@@ -144,3 +144,82 @@ def test_castors_that_swivel_are_no_skid_steer(tmp_path):
     notes = import_one(tmp_path, "bare", ("</robot>", castors + "</robot>"))
     assert not any("skid steer" in line for line in notes)
     assert any("castors became balls" in line and "roll_-0.05" in line and "roll_0.2" in line for line in notes)
+
+
+def hung(name, parent, kind, place, axis, inside):
+    joint = f'<joint name="{name}_joint" type="{kind}"><parent link="{parent}"/><child link="{name}"/>'
+    return f'<link name="{name}">{inside}</link>{joint}<origin xyz="{place}"/><axis xyz="{axis}"/></joint>'
+
+
+def wheel_shape(radius):
+    shape = f'<origin rpy="1.5708 0 0"/><geometry><cylinder radius="{radius}" length="0.04"/></geometry>'
+    inertia = '<inertia ixx="2e-4" iyy="3e-4" izz="2e-4" ixy="0" ixz="0" iyz="0"/>'
+    return f'<inertial><mass value="0.3"/>{inertia}</inertial><visual>{shape}</visual><collision>{shape}</collision>'
+
+
+def turning(name, place, radius=0.06, parent="base_link"):
+    return hung(name, parent, "continuous", place, "0 1 0", wheel_shape(radius))
+
+
+BOTH = "".join(turning(f"wheel_{side}", f"0 {y} -0.03") for side, y in (("left", 0.16), ("right", -0.16)))
+BOX = '<geometry><box size="0.4 0.25 0.08"/></geometry>'
+HULL = (
+    '<link name="base_link"><inertial><mass value="8"/><inertia ixx="0.05" iyy="0.1" izz="0.12" ixy="0" ixz="0" iyz="0"/></inertial>'
+    f"<visual>{BOX}</visual><collision>{BOX}</collision></link>"
+)
+
+
+def taken(tmp_path, *parts):
+    """The drive of the vehicle that is made of them, its folder and the notes."""
+    (tmp_path / "x.urdf").write_text(f'<robot name="it">{HULL}{"".join(parts)}</robot>')
+    notes = import_vehicle(tmp_path / "x.urdf", tmp_path / "it")
+    return load_vehicle(tmp_path, "it").ground.drive, tmp_path / "it", notes
+
+
+@pytest.mark.parametrize("kind", ["revolute", "prismatic"])
+def test_wheels_on_rockers_and_springs_drive_as_those_on_the_body(tmp_path, kind):
+    """As of the Leo Rover: a rocker on each side that turns as the wheels do."""
+    parts = []
+    for side, y in (("left", 0.16), ("right", -0.16)):
+        parts.append(hung(f"rocker_{side}", "base_link", kind, f"0 {y} -0.01", "0 1 0" if kind == "revolute" else "0 0 1", ""))
+        ends = (("front", 0.14), ("rear", -0.14))
+        parts += [turning(f"wheel_{end}_{side}", f"{x} 0 -0.03", parent=f"rocker_{side}") for end, x in ends]
+    drive_file, folder, _ = taken(tmp_path, *parts)
+    assert (drive_file.kind, len(drive_file.left)) == ("skid_steer", 2)
+    assert [line for line in inspect(folder).faults if "lidar" not in line] == []
+
+
+def test_of_wheels_of_a_track_those_that_stand_on_the_floor_drive(tmp_path):
+    """As of AgileX' Bunker: sprockets larger than the road wheels hang above the floor."""
+    parts = []
+    for side, y in (("left", 0.16), ("right", -0.16)):
+        parts += [turning(f"sprocket_{end}_{side}", f"{x} {y} 0.06", 0.08) for end, x in (("a", 0.3), ("b", -0.3))]
+        parts += [turning(f"wheel_{i}_{side}", f"{x} {y} -0.03", 0.05) for i, x in enumerate((0.18, 0.0, -0.18))]
+    drive_file, folder, _ = taken(tmp_path, *parts)
+    assert (drive_file.kind, len(drive_file.left), drive_file.wheel_radius) == ("skid_steer", 3, pytest.approx(0.05))
+    assert [line for line in inspect(folder).faults if "lidar" not in line] == []
+    driven = drive(folder, (0.0, 0.5), np.pi / 0.5)
+    assert driven.pose[2] == pytest.approx(np.pi, rel=0.03)
+
+
+def test_a_body_that_hangs_on_its_belly_is_found_by_driving_it(tmp_path):
+    """Nothing is wrong with its figures; it just does not move as its wheels turn."""
+    belly = '<collision><geometry><box size="0.3 0.2 0.0405"/></geometry></collision>'
+    _, folder, _ = taken(tmp_path, BOTH, hung("belly", "base_link", "fixed", "0 0 -0.07", "1 0 0", belly))
+    assert any("in the simulator" in line or "reaches" in line for line in inspect(folder).faults)
+
+
+def test_packages_of_a_workspace_are_found_wherever_they_lie_in_it(tmp_path):
+    """As of TurtleBot 4, which is built on Create 3's description in another repository."""
+    parts = tmp_path / "src" / "parts_repo" / "group" / "parts_description"
+    robot = tmp_path / "src" / "robot_repo" / "robot_description" / "urdf"
+    for folder, package in ((parts, "parts_description"), (robot.parent, "robot_description")):
+        folder.mkdir(parents=True)
+        (folder / "package.xml").write_text(f"<package><name>{package}</name></package>")
+    robot.mkdir()
+    space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    (parts / "wheels.xacro").write_text(f'<robot {space}><xacro:macro name="wheels">{BOTH}</xacro:macro></robot>')
+    include = '<xacro:include filename="$(find parts_description)/wheels.xacro"/><xacro:wheels/>'
+    (robot / "it.urdf.xacro").write_text(f'<robot name="it" {space}>{HULL}{include}</robot>')
+    import_vehicle(robot / "it.urdf.xacro", tmp_path / "it")
+    assert load_vehicle(tmp_path, "it").ground.drive.kind == "differential"

@@ -5,7 +5,7 @@ import pytest
 
 from launch.vehicles.importing import import_vehicle
 from launch.vehicles.inspection import inspect
-from tests.launch.vehicles.driving import drive
+from launch.vehicles.trial_drive import drive
 from tests.launch.vehicles.test_odd_robots import INERTIA, write
 from uvf.models.vehicle.file import load_vehicle
 

@@ -75,7 +75,6 @@ REFUSED = {
     "entity of a file": ('<!DOCTYPE r [<!ENTITY x SYSTEM "file:///etc/passwd">]><robot name="it">&x;</robot>', "x.urdf"),
     "links without joints": (f'<robot name="it">{BODY}</robot>', "no two wheels of one size on one axis; joints that turn: none"),
     "one wheel": (but(wheel("right", -0.12), ""), "joints that turn: left_wheel_joint"),
-    "wheels that are fixed": (but("continuous", "fixed"), "wheels that are fixed: left_wheel_joint, right_wheel_joint"),
     "wheels that lie": (but('xyz="0 1 0"', 'xyz="0 0 1"'), "no two wheels of one size on one axis"),
     "wheels of two sizes": (but(wheel("left", 0.12), wheel("left", 0.12).replace("0.05", "0.04")), "no two wheels of one size on one axis"),
     "a ring of joints": (
@@ -85,7 +84,10 @@ REFUSED = {
     "sdf without a model": ('<sdf version="1.7"></sdf>', "no <model> with joints in it"),
     "xacro: unknown name": (but('radius="0.02"', 'radius="${wheel_r}"', of=XACRO), "name 'wheel_r' is not defined"),
     "xacro: division by zero": (but('radius="0.02"', 'radius="${1/0}"', of=XACRO), "division by zero"),
-    "xacro: argument missing": (but('radius="0.02"', 'radius="$(arg size)"', of=XACRO), "Undefined substitution argument size"),
+    "xacro: argument missing": (
+        but('radius="0.02"', 'radius="$(arg size)"', of=XACRO),
+        "argument size; give it with --arg size:=VALUE",
+    ),
     "xacro: runs a program": (
         but('radius="0.02"', f'radius="{RUNS}"', of=XACRO),
         "Use of invalid name(s): __import__",
@@ -96,6 +98,10 @@ REFUSED = {
     ),
 }
 TOLD = {
+    "wheels that are fixed": (
+        but("continuous", "fixed"),
+        "wheels that are fixed in the file are taken to turn; check what drives it: left_wheel_joint, right_wheel_joint",
+    ),
     "joint to no link": (but('<parent link="base_link"/><child link="castor"/>', '<parent link="hull"/><child link="castor"/>'),
                          "joints to links that are not there, left out with what hangs on them: castor_joint (hull)"),
     "a link on nothing": (more(f'<link name="stray"><visual>{BOX}</visual></link>'), "no joint of base_link, left out: stray"),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from launch.vehicles.inspection import inspect
-from tests.launch.vehicles.driving import drive
+from launch.vehicles.trial_drive import drive
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import load_vehicle
 

@@ -169,7 +169,7 @@ def _axle_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:
     if abs(abs(track) - drive.track) > SAME * drive.track:
         yield f"{ground.at('drive', 'track')}: {drive.track:g} m, but the wheels of the URDF are {abs(track):.4g} m apart"
     if isinstance(drive, SkidSteerFile):
-        yield from _scrubbing_faults(body, drive, np.array(centres["left"] + centres["right"]), ground)
+        yield from _scrubbing_faults(body, np.array(centres["left"] + centres["right"]))
     else:
         yield from _off_centre(body, (left + right) / 2, f"the middle of the {'axle' if isinstance(drive, OneAxle) else 'wheels'} is")
     if isinstance(drive, MecanumFile):
@@ -234,15 +234,12 @@ def _off_centre(body: CheckedBody, place: Floats, what: str) -> Iterator[str]:
         yield f"{_at(body.model, line)}: {what} at x = {place[0]:.3f}, y = {place[1]:.3f} m; base_link must lie under it"
 
 
-def _scrubbing_faults(body: CheckedBody, drive: SkidSteerFile, centres: Floats, ground: FileLocation) -> Iterator[str]:
-    """How wheels that scrub make the vehicle turn, by where they stand and what they carry."""
+def _scrubbing_faults(body: CheckedBody, centres: Floats) -> Iterator[str]:
+    """The point about which wheels that scrub make the vehicle turn, by where they stand and what they carry."""
     if body.mass is None:
         return
     found = scrubbing(centres[:, :2], shared_loads(centres[:, :2], body.mass.com[:2]))
     yield from _off_centre(body, np.array(found.pivot), "with these masses and wheels it turns about a point")
-    told = drive.effective_track
-    if abs(told - found.track) > SAME * found.track:
-        yield f"{ground.at('drive', 'effective_track')}: {told:g} m, but with these masses and wheels it is {found.track:.4g} m"
 
 
 def _outline_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.maths.rotations import from_matrix
+from uvf.maths.rotations import from_matrix, rotate
 from uvf.maths.se3 import IDENTITY, Transform, apply, inverse
 from uvf.maths.wheels.scrubbing import Scrubbing, scrubbing, shared_loads
 from uvf.models.importing.omni_wheels import meeting_point, ring_of
 from uvf.models.importing.robot import Foreign
 from uvf.models.importing.steered_wheels import car_of
-from uvf.models.importing.wheel_guess import CASTORS, Pair, WheelGuess, may_turn, shapes_below, wheel_on
+from uvf.models.importing.wheel_guess import CASTORS, Pair, WheelGuess, loosened_wheels, may_turn, shapes_below, wheel_on
 from uvf.models.shapes.mesh import reach
 from uvf.models.urdf.inertia import whole
 from uvf.models.urdf.robot import Joint, UrdfModel
@@ -24,8 +24,10 @@ from uvf.models.yaml_data import BadInput
 Floats = NDArray[np.float64]
 
 PARALLEL = 0.97
+LEVEL, OFF_FLOOR = 0.3, 0.35  # of an axis' z, and of a radius
+ROCKS = 0.7  # cosine between the axes of a rocker and its wheel, at least
 ALIKE = 0.12  # share by which the radii of a pair may differ, and the tracks of pairs that drive together
-MECANUM = re.compile(r"mecan", re.I)
+MECANUM = re.compile(r"mecan|omni.?wheel|swedish", re.I)
 PASSIVE = re.compile(r"cast[eo]r|swivel|passive|idler|fork|steer|pivot|omni|follow", re.I)
 DRIVEN = re.compile(r"wheel|whl|tire|tyre|ruota|rueda|roue|rad\b|drive|motor|trac", re.I)
 LEFT = re.compile(
@@ -100,6 +102,10 @@ def find_wheels(foreign: Foreign) -> DriveWheels:
     if ring := ring_of(wheels):
         return _omni(ring, wheels, foreign)
     pairs = [(a, b) for a, b in combinations(wheels, 2) if _opposite(a, b)]
+    if not pairs and (loosened := loosened_wheels(foreign)):
+        foreign.notes.add("wheels that are fixed in the file are taken to turn; check what drives it", ", ".join(loosened))
+        foreign.model = replace(model, joints=model.joints | loosened)
+        return find_wheels(foreign)
     if not pairs:
         found = ", ".join(w.joint.name for w in wheels) or "none"
         fixed = ", ".join(name for name, joint in model.joints.items() if joint not in turning and "wheel" in name.lower())
@@ -112,7 +118,8 @@ def find_wheels(foreign: Foreign) -> DriveWheels:
         straight, steered = car
         return with_steering(_oriented([straight], wheels, foreign), steered)
     middle = np.mean([p.translation for p in model.link_poses().values()], axis=0)
-    best = max(pairs, key=lambda pair: _score(pair, foreign, middle))
+    lowest = min(_bottom(pair) for pair in pairs)
+    best = max(pairs, key=lambda pair: _score(pair, foreign, (middle, lowest)))
     return _oriented([best, *_more_pairs(best, pairs, foreign)], wheels, foreign)
 
 
@@ -156,11 +163,16 @@ def _more_pairs(best: Pair, pairs: list[Pair], foreign: Foreign) -> list[Pair]:
     for pair in pairs:
         taken = {w.joint.name for p in (best, *found) for w in p}
         called = _called_driven(pair) or not _called_driven(best)
-        drives = all(w.joint.name in told for w in pair) if told else called and not any(PASSIVE.search(n) for n in _names(pair))
+        passive = _is_passive(pair) and not _is_passive(best)
+        drives = all(w.joint.name in told for w in pair) if told else called and not passive
         steered = not slide and any(swivels(foreign.model, w.joint) for w in pair)
         if drives and not steered and not any(w.joint.name in taken for w in pair) and _alike(best, pair):
             found.append(pair)
     return found
+
+
+def _is_passive(pair: Pair) -> bool:
+    return any(PASSIVE.search(name) for name in _names(pair))
 
 
 def _names(pair: Pair) -> list[str]:
@@ -182,10 +194,14 @@ def _alike(a: Pair, b: Pair) -> bool:
 
 
 def swivels(model: UrdfModel, joint: Joint) -> bool:
-    """Whether a wheel hangs in a fork that turns too, or is called a castor."""
-    fork = model.parents.get(joint.parent)
-    called = any(word in f"{joint.name} {joint.child}".lower() for word in CASTORS)
-    return called or (fork is not None and fork.kind != "fixed")
+    """Whether a wheel hangs in a fork that turns too, or is called a castor. A rocker turns as the wheel does, a spring slides."""
+    if any(word in f"{joint.name} {joint.child}".lower() for word in CASTORS):
+        return True
+    fork, poses = model.parents.get(joint.parent), model.link_poses()
+    if fork is None or fork.kind not in ("revolute", "continuous") or not {fork.child, joint.child} <= poses.keys():
+        return False
+    axes = [rotate(poses[each.child].rotation, each.axis) for each in (fork, joint)]
+    return abs(float(axes[0] @ axes[1])) < ROCKS
 
 
 def _opposite(a: WheelGuess, b: WheelGuess) -> bool:
@@ -197,7 +213,14 @@ def _opposite(a: WheelGuess, b: WheelGuess) -> bool:
     return bool(abs(apart @ a.axis) / distance > PARALLEL)
 
 
-def _score(pair: Pair, foreign: Foreign, middle: Floats) -> tuple[float, ...]:
+def _bottom(pair: Pair) -> float:
+    """Height [m] of the lowest point of a pair, where z is up; of one on an upright axis none."""
+    return min(float(w.centre[2]) - w.radius if abs(w.axis[2]) < LEVEL else 0.0 for w in pair)
+
+
+def _score(pair: Pair, foreign: Foreign, about: tuple[Floats, float]) -> tuple[float, ...]:
+    """about: the middle of the links (3,) [m], and the height of the lowest pair [m]. Wheels that do not reach the floor drive nothing."""
+    middle, lowest = about
     names = _names(pair)
     told = {*foreign.drive.left, *foreign.drive.right}
     score = 10.0 * all(w.joint.name in told for w in pair)
@@ -205,7 +228,8 @@ def _score(pair: Pair, foreign: Foreign, middle: Floats) -> tuple[float, ...]:
     score += 2.0 * (any(LEFT.search(n) for n in names) and any(RIGHT.search(n) for n in names))
     score -= 3.0 * any(w.joint.mimics is not None for w in pair) + 4.0 * any(swivels(foreign.model, w.joint) for w in pair)
     between = (pair[0].centre + pair[1].centre) / 2
-    return score, round(pair[0].radius, 3), -round(float(np.linalg.norm(between - middle)), 3)
+    stands = _bottom(pair) < lowest + OFF_FLOOR * pair[0].radius
+    return score, stands, round(pair[0].radius, 3), -round(float(np.linalg.norm(between - middle)), 3)
 
 
 def _oriented(pairs: list[Pair], wheels: list[WheelGuess], foreign: Foreign) -> DriveWheels:

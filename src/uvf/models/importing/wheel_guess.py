@@ -1,12 +1,14 @@
 """What may be a wheel: a joint that turns with something round on it."""
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.rotations import rotate
 from uvf.maths.se3 import Transform
+from uvf.models.importing.robot import Foreign
 from uvf.models.shapes.mesh import placed, reach
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.robot import Joint, UrdfModel
@@ -29,6 +31,8 @@ class WheelGuess:
 
 
 Pair = tuple[WheelGuess, WheelGuess]
+WHEEL = re.compile(r"wheel|whl|tyre|tire")
+LEVEL = 0.3  # of an axis' z
 CASTORS = ("cast", "swivel", "ball", "skid", "support")
 
 
@@ -56,6 +60,22 @@ def wheel_on(model: UrdfModel, joint: Joint) -> WheelGuess | None:
     if radius <= 0 or spans.max() > 1.25 * radius or spans.min() < 0.75 * radius:
         return None
     return WheelGuess(joint, pose.translation + offset * axis, axis, float(spans.max()), float(ends.sum()))
+
+
+def loosened_wheels(foreign: Foreign) -> dict[str, Joint]:
+    """Fixed joints with something round on them that is called a wheel, as joints that turn about its level axis."""
+    found, poses = {}, foreign.model.link_poses()
+    for name, joint in foreign.model.joints.items():
+        called = f"{name} {joint.child}".lower()
+        if joint.kind != "fixed" or not WHEEL.search(called) or any(word in called for word in CASTORS) or joint.child not in poses:
+            continue
+        for axis in np.eye(3)[[1, 2, 0]]:
+            turning = replace(joint, kind="continuous", axis=axis)
+            level = abs(float(rotate(poses[joint.child].rotation, axis)[2])) < LEVEL
+            if level and (wheel := wheel_on(foreign.model, turning)) is not None and wheel.width < 2 * wheel.radius:
+                found[name] = turning
+                break
+    return found
 
 
 def shapes_below(model: UrdfModel, link: str, poses: dict[str, Transform]) -> list[Solid]:

@@ -8,7 +8,10 @@ PARENTS_SEARCHED = 6
 
 
 def package_folder(path: Path, package: str) -> Path | None:
-    """The folder of a ROS package: one of that name among the file's parents or in one of them, or whose package.xml names it."""
+    """The folder of a ROS package: one of that name among the file's parents or in one of them, or whose package.xml names it.
+
+    Else, as in a workspace, one of that name with a package.xml up to three levels below a parent.
+    """
     for parent in _near(path):
         for folder in (parent, parent / package):
             if folder.name == package and folder.is_dir():
@@ -16,6 +19,10 @@ def package_folder(path: Path, package: str) -> Path | None:
         manifest = parent / "package.xml"
         if manifest.is_file() and f"<name>{package}</name>" in manifest.read_text(encoding="utf-8", errors="replace"):
             return parent
+    for parent in _near(path):
+        for levels in ("*", "*/*"):
+            if parent != parent.parent and (found := sorted(parent.glob(f"{levels}/{package}/package.xml"))):
+                return found[0].parent
     return None
 
 

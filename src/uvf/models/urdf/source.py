@@ -19,6 +19,7 @@ from uvf.models.urdf.marked import XACRO, one_line, parsed
 from uvf.models.urdf.packages import is_file
 from uvf.models.yaml_data import BadInput, nearest
 
+LACKS = re.compile(r"Undefined substitution argument (\w+)")
 MATCHED_NOTHING = re.compile('filename spec "(.+)" matched no files')
 Note = Callable[[str], None]
 
@@ -79,7 +80,9 @@ def _expanded(copies: Copies, arguments: dict[str, str]) -> bytes:
                 document = xacro.process_file(copies.main, mappings=dict(arguments), verbosity=0)
         except (xacro.XacroException, substitution_args.ArgException, substitution_args.SubstitutionException) as error:
             if not _brought(copies, said.getvalue(), _missing(error)):
-                raise _refusal(copies, error, "mend the macro or give its arguments") from error
+                lacks = LACKS.search(str(error))
+                remedy = f"give it with --arg {lacks[1]}:=VALUE" if lacks else "mend the macro or give its arguments"
+                raise _refusal(copies, error, remedy) from error
         except RecursionError as error:
             raise _refusal(copies, "a macro or an included file uses itself", "cut the ring") from error
         except (NameError, TypeError, ValueError, KeyError, AttributeError, SyntaxError) as error:
