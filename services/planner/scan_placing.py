@@ -53,6 +53,7 @@ class ScanPlacer:
         self._lidars, self.farthest = lidars, farthest
         self._history = PoseHistory(HISTORY)
         self._placed_at = dict.fromkeys(lidars, -np.inf)
+        self._waiting: dict[str, LaserScan] = {}
 
     @property
     def t(self) -> float:
@@ -86,9 +87,18 @@ class ScanPlacer:
         return x / LATELY, turned / LATELY
 
     def place(self, scan: LaserScan) -> PlacedScan | None:
-        """The scan, if it is newer than the last one of this lidar and the poses reach to its end."""
+        """The scan, if it is newer than the last one of this lidar and the poses reach to its end.
+
+        One that is ahead of the poses waits for the next call: of a quick lidar the newest scan always is.
+        """
         if (lidar := self._lidars.get(scan.frame_id)) is None:
             return None
+        if (placed := self._place(scan, lidar)) is not None:
+            return placed
+        waited, self._waiting[scan.frame_id] = self._waiting.get(scan.frame_id), scan
+        return self._place(waited, lidar) if waited is not None and waited is not scan else None
+
+    def _place(self, scan: LaserScan, lidar: PlacedLidar) -> PlacedScan | None:
         taken_at = lidar.sweeping.end(seconds(scan.timestamp))
         pose = self._history.at(taken_at)
         if taken_at <= self._placed_at[scan.frame_id] or pose is None:

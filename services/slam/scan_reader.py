@@ -1,6 +1,7 @@
 """Scans as readings: with the beams' places on the vehicle, straightened, and where the odometry had it."""
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -27,9 +28,23 @@ class ScanReader:
         self._beams: dict[Shape, Beams] = {}
         self._scan_time = -1.0
         self._ranges = np.zeros(0)
+        self._waiting: LaserScan | None = None
 
     def read(self, scan: LaserScan, frames: FrameBuffer) -> Reading | None:
         """A new scan from where the lidar was at its last beam; None for one that has been seen. Raises FrameError.
+
+        One that is ahead of the frames waits for the next call: of a quick lidar the newest scan always is.
+        """
+        try:
+            return self._read(scan, frames)
+        except FrameError:
+            waited, self._waiting = self._waiting, scan
+            if waited is None or waited is scan:
+                raise
+        return self._read(waited, frames)
+
+    def _read(self, scan: LaserScan, frames: FrameBuffer) -> Reading | None:
+        """Raises FrameError.
 
         Noise makes each scan another: one that is equal comes from a lidar that is frozen, whatever its stamp says, unless nothing
         came back at all.
@@ -59,20 +74,16 @@ class OtherScans:
 
     def __init__(self, vehicle: str, lidars: Sequence[Lidar]) -> None:
         self._readers = {f"{vehicle}/{lidar.frame}": ScanReader(vehicle, lidar) for lidar in lidars}
-        self._waiting: dict[str, LaserScan] = {}
+        self._scans: dict[str, LaserScan] = {}
         self._newest: dict[str, Reading] = {}
 
     def hear(self, scans: Iterable[LaserScan], frames: FrameBuffer) -> None:
-        """Takes what has come; a scan that is ahead of the frames waits, until a newer one comes."""
-        self._waiting |= {scan.frame_id: scan for scan in scans if scan.frame_id in self._readers}
-        for frame, scan in list(self._waiting.items()):
-            try:
-                reading = self._readers[frame].read(scan, frames)
-            except FrameError:
-                continue
-            del self._waiting[frame]
-            if reading is not None:
-                self._newest[frame] = reading
+        """Takes what has come, and what has come before and was ahead of the frames."""
+        self._scans |= {scan.frame_id: scan for scan in scans if scan.frame_id in self._readers}
+        for frame, scan in self._scans.items():
+            with suppress(FrameError):
+                if (reading := self._readers[frame].read(scan, frames)) is not None:
+                    self._newest[frame] = reading
 
     def about(self, t: float) -> tuple[Reading, ...]:
         """Those of about ``t`` [s]: of a lidar that is silent there is none."""

@@ -64,3 +64,15 @@ def test_stands_when_either_lidar_falls_silent():
     assert bench.out["drive"].linear > 0.1
     assert bench.step(10, follow, behind=3.0, speaks=False).out["drive"].linear == 0.0
     assert bench.step(5, follow, behind=3.0).out["drive"].linear > 0.1
+
+
+def test_a_lidar_whose_newest_scan_is_always_ahead_of_the_poses_is_seen_with():
+    bench = TwoLidars()
+    follow = NavDirective(number=1, action=NavDirective.FOLLOW)
+    for _ in range(12):
+        bench.t += 0.1
+        poses = [PoseInFrame(timestamp=stamp(bench.t - s), pose=planar_pose(0.0, 0.0, 0.0)) for s in (0.08, 0.04, 0.02)]
+        scans = [half_scan(bench.t - 0.01, frame, 3.0) for frame in ("v/front", "v/rear")]
+        told = NOTHING | {"directive": follow, "path": EAST, "pose": poses, "scan": scans[0]}
+        bench.out = stepped(bench.service, bench.t, other_scans=scans[1:], **told)
+    assert bench.out["drive"].linear > 0.1

@@ -58,3 +58,16 @@ def test_the_session_keeps_what_both_saw():
     assert other.beams.origin == pytest.approx((-0.2, 0.0))
     assert np.cos(other.beams.bearings[90]) == pytest.approx(-1.0)
     assert other.ranges[90] == pytest.approx(1.8, abs=1e-6)
+
+
+def test_of_a_quick_lidar_whose_newest_scan_is_always_ahead_of_the_odometry_the_one_before_is_taken():
+    """100 scans a second, odometry 50 times: at each step the newest scan is 10 ms younger than the newest frame."""
+    service = MappingService("v", [FRONT, REAR], START, MappingParams(), lambda name: make_method(name, method_params(name, {}, "test")))
+    out = {}
+    for k in range(1, 15):
+        t = 0.1 * k
+        frames = frames_with(dict.fromkeys((t - 0.3, t - 0.02), (0.0, 0.0, 0.0)))
+        frames.add(frame_at(0.0, "base_footprint", "rear", (-0.2, 0.0, np.pi)), is_static=True)
+        told = {"scan": half_scan(t - 0.01, "v/lidar", 3.0), "other_scans": [half_scan(t - 0.01, "v/rear", 1.8)]}
+        out |= stepped(service, t, frames=frames, **told)
+    assert occupied_behind(out["map"]) > 15
