@@ -58,13 +58,13 @@ class ObstacleSensors:
         self._sonars = {sonar.frame: sonar for sonar in sensors.sonars}
         self._edges = EdgeSense(sensors.rangefinders)
         self._bumper = BumpSense(footprint, {b.name: (b.angle_min, b.angle_max) for b in sensors.bumpers})
-        self._scans: dict[tuple[float, float], PlacedScan] = {}
-        """The last one of each lidar, by where it sits."""
+        self._scans: dict[int, PlacedScan] = {}
+        """The last one of each lidar."""
         self._waiting: deque[tuple[float, str, GroundSight]] = deque(maxlen=WAITING_MOST)
 
     def see(self, scan: PlacedScan) -> None:
         """What a lidar has seen explains what a sonar hears."""
-        self._scans[scan.eye] = scan
+        self._scans[scan.lidar] = scan
 
     def take(self, age: float, readings: OtherReadings, hidden: HiddenObstacles) -> None:
         """Puts what has been seen among the hidden obstacles, whose lifetime goes by ``age``."""

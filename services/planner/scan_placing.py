@@ -34,8 +34,8 @@ class PlacedScan:
     """(n, 2) [m], ends of the beams in their order; those without return end at the farthest."""
     ranges: Floats
     """(n,) [m], 0 = no return."""
-    is_of_first: bool
-    """Whether it is of the first lidar, by whose scans what moves is followed."""
+    lidar: int
+    """Which of the vehicle's lidars it is of, 0 the first."""
 
 
 class PlacedLidar(NamedTuple):
@@ -114,7 +114,7 @@ class ScanPlacer:
             points[beams] = transform(base_from_frame, seen)
         self._placed_at[scan.frame_id] = taken_at
         x, y, _ = lidar.base_from_lidar.translation.tolist()
-        return PlacedScan(taken_at, pose, (x, y), *_thinned(points, ranges), scan.frame_id == next(iter(self._lidars)))
+        return PlacedScan(taken_at, pose, (x, y), *_thinned(points, ranges), list(self._lidars).index(scan.frame_id))
 
 
 def _thinned(points: Floats, ranges: Floats) -> tuple[Floats, Floats]:

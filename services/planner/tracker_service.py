@@ -146,7 +146,7 @@ class TrackerService(Service):
         seen = [placed for scan in (now.scan, *now.other_scans) if (placed := self._placer.place(scan)) is not None]
         for placed in seen:
             self._sensors.see(placed)
-            controller.see(placed.t, placed.pose, placed.eye, placed.points, placed.ranges, placed.is_of_first)
+            controller.see(placed.t, placed.pose, placed.eye, placed.points, placed.ranges, placed.lidar)
         if seen:
             if (mask := self._keep_out.take(now.keep_out)) is not None:
                 controller.keep_out(mask.kept_out_near(self._pose[:2], KEEP_OUT_REACH))

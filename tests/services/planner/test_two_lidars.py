@@ -31,10 +31,11 @@ def half_scan(t, frame, wall):
 
 
 class TwoLidars:
-    """Looks east from the world's origin; a wall 3 m ahead, another ``behind`` [m] the vehicle's middle."""
+    """Looks east from the world's origin; a wall 3 m ahead, another ``behind`` [m] the vehicle's middle. apart: m, of the lidars."""
 
-    def __init__(self):
-        placer = ScanPlacer({"v/front": lidar(0.05, 0.0), "v/rear": lidar(-0.05, np.pi)}, FARTHEST)
+    def __init__(self, apart=0.05):
+        self.apart = apart
+        placer = ScanPlacer({"v/front": lidar(apart, 0.0), "v/rear": lidar(-apart, np.pi)}, FARTHEST)
         sensors = ObstacleSensors(placer, FOOTPRINT, NO_OTHERS, TOP)
         self.service = TrackerService("v", (BODY, FOOTPRINT), sensors, TrackerParams())
         self.t, self.x, self.out = 0.0, 0.0, {}
@@ -43,16 +44,17 @@ class TwoLidars:
         for _ in range(n):
             self.t += 0.1
             poses = [PoseInFrame(timestamp=stamp(self.t - s), pose=planar_pose(self.x, 0.0, 0.0)) for s in (0.08, 0.04, 0.02)]
-            front = half_scan(self.t - 0.03, "v/front", 3.0 - self.x - 0.05)
-            rear = half_scan(self.t - 0.05, "v/rear", behind + self.x - 0.05)
+            front = half_scan(self.t - 0.03, "v/front", 3.0 - self.x - self.apart)
+            rear = half_scan(self.t - 0.05, "v/rear", behind + self.x - self.apart)
             told = NOTHING | {"directive": directive, "path": EAST, "pose": poses, "scan": front}
             self.out = stepped(self.service, self.t, other_scans=[rear] if speaks else [], **told)
             self.x += 0.1 * self.out["drive"].linear
         return self
 
 
-def test_backs_up_as_far_as_the_rear_lidar_shows_room():
-    free, shut = TwoLidars().step(60, BACK, behind=3.0), TwoLidars().step(60, BACK, behind=0.35)
+@pytest.mark.parametrize("apart", [0.05, 0.0])
+def test_backs_up_as_far_as_the_rear_lidar_shows_room(apart):
+    free, shut = TwoLidars(apart).step(60, BACK, behind=3.0), TwoLidars(apart).step(60, BACK, behind=0.35)
     assert free.x == pytest.approx(-0.5, abs=0.05)
     assert -0.35 + BODY.radius < shut.x < -0.05
     assert shut.out["report"].impossible

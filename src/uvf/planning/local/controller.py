@@ -93,20 +93,20 @@ class LocalController:
         self._odometer = 0.0  # m
         self._pose: Pose2 | None = None
         self._near: Floats = np.zeros((0, 2))
-        self._shown: dict[tuple[float, float], Floats] = {}
-        """(n, 2) m, the poses' frame: near ends of the last scan from each place on the vehicle."""
+        self._shown: dict[int, Floats] = {}
+        """(n, 2) m, the poses' frame: near ends of the last scan of each lidar."""
         self._last = STOP
 
-    def see(self, t: float, pose: Pose2, eye: tuple[float, float], points: Floats, ranges: Floats, follows: bool = True) -> None:
+    def see(self, t: float, pose: Pose2, eye: tuple[float, float], points: Floats, ranges: Floats, lidar: int = 0) -> None:
         """Takes a planar scan at ``t`` [s]: points (n, 2) [m, base frame] in the order of the beams, ranges (n,) [m], 0 = no return.
 
-        A beam without return has its point where it would end at its farthest; it clears. eye: (x, y) [m, base frame] of the sensor; of
-        several, each shows what the others do not, but what moves is followed by the scans of only one (``follows``).
+        A beam without return has its point where it would end at its farthest; it clears. eye: (x, y) [m, base frame] of the sensor. Of
+        several lidars, told apart by their number, each shows what the others do not; what moves is followed by the scans of number 0.
         """
         ends = transform(pose, points)
         (x, y), *_ = transform(pose, np.array((eye,))).tolist()
         self.layer.recentre((pose[0], pose[1]))
-        if follows:
+        if lidar == 0:
             moves = self.moving.observe(t, ends, ranges, SeenFrom((x, y), self.layer.lately_free(t, (x, y), ends)))
         else:
             moves = self._moves(ends)
@@ -121,8 +121,8 @@ class LocalController:
         for mx, my, _, _, radius in self.moving.moving():  # it was marked before it was known to move
             self.layer.free_disc((mx, my), radius + BESIDE)
         kept = (ranges > 0.0) & ~self._evaded(ends) & (np.abs(points) <= NEAR).all(axis=1)
-        others = [transform(inverse(pose), shown) for place, shown in self._shown.items() if place != eye]
-        self._shown[eye] = ends[kept]
+        others = [transform(inverse(pose), shown) for number, shown in self._shown.items() if number != lidar]
+        self._shown[lidar] = ends[kept]
         self._near = np.concatenate(
             (points[kept], *others, transform(inverse(pose), self.layer.lethal_near((pose[0], pose[1]), REMEMBERED)))
         )
