@@ -9,8 +9,7 @@ from scipy import ndimage
 
 from launch.worlds.report import RESOLUTION
 from uvf.maths.footprint import footprint
-from uvf.maths.solids import joined
-from uvf.models.shapes.scene import primitives
+from uvf.models.shapes.scene import primitives, still
 from uvf.models.vehicle.file import VehicleFile
 from uvf.models.world.drivable import LEDGE, drivable
 from uvf.models.world.file import WorldFile
@@ -44,7 +43,7 @@ def blind_spots(world: WorldFile, name: str, file: VehicleFile) -> Iterator[str]
         return
     heights = [lidar.mount.xyz[2] for lidar in lidars]
     plan = floor_plan(world, cell_size(world, RESOLUTION))
-    parts = joined([primitives(thing) for thing in things(world) if thing.path is None])
+    parts = still(things(world))
     ground = drivable(parts, *plan.axes(), relief(world)).height
     floor = free_regions(plan, body.radius) == 1
     side = plan.resolution

@@ -49,7 +49,7 @@ class PastModel:
                     del v.heard_at[what]
             if "scan" not in v.heard_at:
                 v.scan_points = None
-            v.other_scan_points.clear()
+            v.other_scans.clear()
         self._shown.clear()
         self._gone.clear()
 

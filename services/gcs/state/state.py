@@ -155,7 +155,7 @@ class Model:
             lidars = {f"{name}/{lidar.frame}": lidar for lidar in vehicle.member.file.sensors.other_lidars} if vehicle is not None else {}
             for scan in scans:
                 if vehicle is not None and scan.frame_id in lidars:
-                    vehicle.other_scan_points[scan.frame_id] = scan_in_world(vehicle, scan, lidars[scan.frame_id])
+                    vehicle.other_scans[scan.frame_id] = scan, scan_in_world(vehicle, scan, lidars[scan.frame_id])
 
     def hear_clock(self, t: float, clock: Clock | None) -> None:
         """Takes the clock message at ``t`` [s, wall]; a new epoch clears tracks and goals."""

@@ -118,8 +118,8 @@ class VehicleModel:
     """Field -> when its newest message came [s, wall]."""
     scan_points: Floats | None = None
     """(n, 3) m, world: the newest scan as seen from where the vehicle was when it came."""
-    other_scan_points: dict[str, Floats | None] = field(default_factory=dict)
-    """The same of further lidars, by their frames."""
+    other_scans: dict[str, tuple[LaserScan, Floats | None]] = field(default_factory=dict)
+    """The newest of each further lidar with its points, as above, by their frames."""
     mapped: float | None = None
     """0..1, the report's ``mapped_floor`` of the newest map."""
     order: Order | None = None

@@ -44,10 +44,12 @@ class WayLayers:
         }
 
     def _scan(self, v: VehicleModel) -> Nodes:
-        seen = [points for points in (v.scan_points, *v.other_scan_points.values()) if points is not None and len(points)]
+        scans = [(v.scan, v.scan_points), *v.other_scans.values()]
+        seen = [(scan, points) for scan, points in scans if points is not None and len(points)]
         if not seen:
             return {}
-        return self._nodes.make(f"scan {v.name}", [id(points) for points in seen], lambda: Points(np.concatenate(seen), SCAN, 0.035))
+        made_of = [scan for scan, _ in seen]
+        return self._nodes.make(f"scan {v.name}", made_of, lambda: Points(np.concatenate([points for _, points in seen]), SCAN, 0.035))
 
     def _path(self, v: VehicleModel) -> Nodes:
         path = v.path

@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.maths.se3 import Transform
+from uvf.maths.se3 import IDENTITY, Transform
 from uvf.models.shapes.mesh import placed, reach
-from uvf.models.urdf.robot import Link, UrdfModel
+from uvf.models.urdf.robot import Link, ModelFault, UrdfModel
 
 LARGEST = 20.0  # m
 HEAVIEST = 20_000.0  # kg/m^3 of the box about a link: of gold
@@ -28,14 +28,13 @@ def size_faults(model: UrdfModel, poses: Mapping[str, Transform]) -> Iterator[st
 
 
 def _heavy(model: UrdfModel, link: Link) -> Iterator[str]:
-    still = Transform(np.array((1.0, 0.0, 0.0, 0.0)), np.zeros(3))
-    extents = _extents(link, still)
+    extents = _extents(link, IDENTITY)
     if link.inertial is None or extents is None:
         return
     volume, mass = float(np.prod(extents[0] - extents[1])), link.inertial.mass
     if volume > SMALLEST and mass > HEAVIEST * volume:
-        where = f"{model.path}:{link.line}" if link.line else str(model.path)
-        yield f"{where}: link '{link.name}' weighs {mass:.4g} kg in a box of {1000 * volume:.3g} l, more than gold would; give kilograms"
+        what = f"link '{link.name}' weighs {mass:.4g} kg in a box of {1000 * volume:.3g} l, more than gold would; give kilograms"
+        yield str(ModelFault(model.path, link.line, what))
 
 
 def _extents(link: Link, frame_from_link: Transform) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:

@@ -44,11 +44,6 @@ class HeightGrid:
     origin: Origin | None = None
     """Of the middle at height 0; None where the file does not say."""
 
-    @property
-    def is_metric(self) -> bool:
-        """Whether the heights are metres."""
-        return self.size is not None
-
 
 def read_heights(path: Path, notes: Notes) -> HeightGrid:
     """The heights of a picture or an elevation model. Raises BadInput for what cannot be read."""
@@ -146,8 +141,8 @@ def terrain_of(grid: HeightGrid, size: tuple[float, float, float], file: Path, n
     return Terrain(file.name, size)
 
 
-def elevation_terrain(path: Path, folder: Path, size: tuple[float, float, float] | None, notes: Notes) -> tuple[Terrain, Origin | None]:
-    """Terrain in ``folder`` of a file of heights, and where on Earth its lowest is z = 0; size: [m] of one that does not state it.
+def terrain_world(path: Path, folder: Path, size: tuple[float, float, float] | None, notes: Notes) -> WorldFile:
+    """A world of ``folder`` with nothing but the terrain of a file of heights, its lowest at z = 0; size: [m] of one that states none.
 
     Raises BadInput.
     """
@@ -161,12 +156,7 @@ def elevation_terrain(path: Path, folder: Path, size: tuple[float, float, float]
     else:
         whole, origin = size, None
     notes.add(f"{whole[0]:.4g} x {whole[1]:.4g} m, {whole[2]:.4g} m from the lowest to the highest, which lie at z = 0 and above")
-    return terrain_of(grid, whole, folder / f"{path.stem}-heights.png", notes), origin
-
-
-def terrain_world(path: Path, folder: Path, size: tuple[float, float, float] | None, notes: Notes) -> WorldFile:
-    """A world of ``folder`` with nothing but the terrain of a file of heights; size: as for ``elevation_terrain``. Raises BadInput."""
-    terrain, origin = elevation_terrain(path, folder, size, notes)
+    terrain = terrain_of(grid, whole, folder / f"{path.stem}-heights.png", notes)
     if origin is None:
         notes.add("the file does not say where on Earth it lies: set 'origin'")
     return WorldFile(f"Terrain of {path.name}.", origin or HOME, terrain_floor(terrain, notes), terrain=terrain)

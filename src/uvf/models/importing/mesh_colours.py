@@ -27,13 +27,14 @@ def mean_colour(scene: Any) -> Colour | None:
 
 def colour_groups(meshes: Sequence[Any]) -> list[tuple[Any, Colour | None]]:
     """The faces of all meshes as a mesh for each colour, at most ``MOST`` of them; one of None for those that have none."""
-    bare = [mesh for mesh in meshes if len(mesh.faces) and face_colours(mesh) is None]
-    painted = [mesh for mesh in meshes if len(mesh.faces) and face_colours(mesh) is not None]
+    coloured = [(mesh, face_colours(mesh)) for mesh in meshes if len(mesh.faces)]
+    bare = [mesh for mesh, colours in coloured if colours is None]
+    painted = [(mesh, colours) for mesh, colours in coloured if colours is not None]
     groups: list[tuple[Any, Colour | None]] = [(_joined(bare), None)] if bare else []
     if not painted:
         return groups
-    whole, colours = _joined(painted), np.concatenate([face_colours(mesh) for mesh in painted])
-    palette, numbers = _palette(colours)
+    whole = _joined([mesh for mesh, _ in painted])
+    palette, numbers = _palette(np.concatenate([colours for _, colours in painted]))
     for k, (r, g, b) in enumerate((palette / 255).tolist()):
         if (numbers == k).any():
             groups.append((whole.submesh([np.flatnonzero(numbers == k)], append=True), (r, g, b)))

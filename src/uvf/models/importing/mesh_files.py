@@ -61,7 +61,7 @@ class MeshStore:
         Raises BadInput as ``convert``.
         """
         if source.resolve() not in self._parts:
-            self._load(source, wanted)
+            self.convert(source, wanted)  # refuses what cannot be read
             groups = colour_groups(trimesh.load_scene(source).dump())
             self._parts[source.resolve()] = groups if len(groups) > 1 else []
         parts, to = self._parts[source.resolve()], np.diag((*wanted.scale, 1.0)) @ self._metres_from_file(source)

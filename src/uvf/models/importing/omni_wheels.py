@@ -9,11 +9,10 @@ from uvf.models.importing.wheel_guess import WheelGuess
 
 Floats = NDArray[np.float64]
 
-LEVEL = 0.98  # of what stands up
+LEVEL = 0.02  # of an axis' z, at most
 ALIKE = 0.1  # share by which radii may differ
 MEETS = 0.15  # of a wheel's distance, by which its axis may miss the middle
 APART = 0.9  # the cosine between two axes that are not one
-UP = np.array((0.0, 0.0, 1.0))
 
 
 def ring_of(wheels: Sequence[WheelGuess]) -> tuple[WheelGuess, ...]:
@@ -21,7 +20,7 @@ def ring_of(wheels: Sequence[WheelGuess]) -> tuple[WheelGuess, ...]:
 
     Their axes are level and meet in one point about which they stand, and are not those of one axle.
     """
-    level = [w for w in wheels if abs(w.axis[2]) < 1.0 - LEVEL]
+    level = [w for w in wheels if abs(w.axis[2]) < LEVEL]
     for size in sorted({round(w.radius, 4) for w in level}, reverse=True):
         ring = [w for w in level if abs(w.radius - size) <= ALIKE * size]
         if len(ring) >= 3 and _meet(ring):

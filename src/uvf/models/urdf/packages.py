@@ -2,6 +2,7 @@
 
 import contextlib
 from collections.abc import Iterable
+from functools import lru_cache
 from pathlib import Path
 
 PARENTS_SEARCHED = 6
@@ -19,7 +20,13 @@ def package_folder(path: Path, package: str) -> Path | None:
         manifest = parent / "package.xml"
         if manifest.is_file() and f"<name>{package}</name>" in manifest.read_text(encoding="utf-8", errors="replace"):
             return parent
-    for parent in _near(path):
+    return _in_workspace(path.parent, package)
+
+
+@lru_cache(maxsize=256)
+def _in_workspace(folder: Path, package: str) -> Path | None:
+    """Of all meshes of a package that is not there it is looked for once."""
+    for parent in _near(folder / package):
         for levels in ("*", "*/*"):
             if parent != parent.parent and (found := sorted(parent.glob(f"{levels}/{package}/package.xml"))):
                 return found[0].parent
