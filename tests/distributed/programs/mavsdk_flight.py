@@ -218,6 +218,7 @@ class Flight:
         await self.do("go on", drone.mission.start_mission())
         await self.until("has flown the mission", lambda: self.progress == (len(ITEMS), len(ITEMS)))
         self.note("finished", now=await drone.mission.is_mission_finished())
+        await self.until("holds after the mission", self.says("flight_mode", "HOLD"))
 
 
 def text_of(value):

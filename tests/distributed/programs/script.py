@@ -55,8 +55,9 @@ class Script:
         return next(step for step in self.steps() if step["what"] == what)
 
     def told(self, stream):
-        """The values of a stream one after the other."""
-        return [step["now"] for step in self.steps() if step["what"] == stream]
+        """The values of a stream one after the other, from its autopilot's first word on: until then a program may have heard UNKNOWN."""
+        values = [step["now"] for step in self.steps() if step["what"] == stream]
+        return values[values[:1] == ["UNKNOWN"] :]
 
     def amiss(self):
         """What was refused or did not come in time."""
