@@ -17,7 +17,7 @@ from uvf.planning.costmap.terrain import TerrainLimits
 from uvf.planning.global_planner import GlobalPlanner
 from uvf.planning.navigation.directive import Directive
 from uvf.planning.navigation.global_routes import GlobalRoutes
-from uvf.runtime.messages.convert import cost_grid, occupancy_cells, pose2_of, seconds
+from uvf.runtime.messages.convert import cost_grid, occupancy_cells, pose2_of, seconds, wxyz
 
 SIZE, RESOLUTION = 8.0, 0.05  # m, of the window in which obstacles are remembered that the map does not show
 TELL_PERIOD = 2.0  # s between two costmaps that are told
@@ -48,7 +48,7 @@ class PlanningGround:
         """Where the vehicle has been and is."""
         for message in poses:
             self.here = compose(self._map_from_world, pose2_of(message.pose))
-            self._sensors.placer.move(seconds(message.timestamp), self.here)
+            self._sensors.placer.move(seconds(message.timestamp), self.here, wxyz(message.pose.orientation))
             self.routes.drive(self.here[:2])
 
     def keep_out(self, grid: Grid | None) -> None:

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import LaserScan
+from uvf.maths import se3
+from uvf.maths.rotations import level_from
 from uvf.maths.se2 import Pose2, PoseHistory, compose, inverse, transform
 from uvf.maths.se3 import Transform, from_above
 from uvf.runtime.messages.convert import scan_rays, seconds
@@ -51,7 +53,7 @@ class ScanPlacer:
     def __init__(self, lidars: Mapping[str, PlacedLidar], farthest: float) -> None:
         """lidars: by the frames that their scans name, the first one first; farthest: m, at which beams without return end."""
         self._lidars, self.farthest = lidars, farthest
-        self._history = PoseHistory(HISTORY)
+        self._history, self._level_from_base = PoseHistory(HISTORY), se3.IDENTITY
         self._placed_at = dict.fromkeys(lidars, -np.inf)
         self._waiting: dict[str, LaserScan] = {}
 
@@ -65,9 +67,10 @@ class ScanPlacer:
         """Distance [m] from the vehicle's centre to the nearest lidar, in the plane."""
         return min(hypot(*lidar.base_from_lidar.translation[:2].tolist()) for lidar in self._lidars.values())
 
-    def move(self, t: float, pose: Pose2) -> None:
-        """The vehicle was at ``pose`` at ``t`` [s]."""
+    def move(self, t: float, pose: Pose2, orientation: Floats) -> None:
+        """The vehicle was at ``pose`` at ``t`` [s]; orientation: wxyz (4,), of which the tilt counts."""
         self._history.add(t, pose)
+        self._level_from_base = Transform(level_from(orientation), np.zeros(3))
 
     def at(self, t: float) -> Pose2 | None:
         """Where the vehicle was at ``t`` [s]; None when that is too long ago, or not known yet."""
@@ -107,13 +110,14 @@ class ScanPlacer:
         ranges = np.where((ranges > 0.0) & (ranges < MOST), ranges, 0.0)
         ends = np.where(ranges > 0.0, ranges, self.farthest)[:, None] * rays
         base_from_frame, points = inverse(pose), np.empty_like(ends)
+        level_from_lidar = se3.compose(self._level_from_base, lidar.base_from_lidar)
         for at, beams in lidar.sweeping.parts(len(ranges), seconds(scan.timestamp)):
             if (frame_from_base := self._history.at(at)) is None:
                 return None
-            seen = transform(frame_from_base, from_above(lidar.base_from_lidar, ends[beams]))
+            seen = transform(frame_from_base, from_above(level_from_lidar, ends[beams]))
             points[beams] = transform(base_from_frame, seen)
         self._placed_at[scan.frame_id] = taken_at
-        x, y, _ = lidar.base_from_lidar.translation.tolist()
+        x, y, _ = level_from_lidar.translation.tolist()
         return PlacedScan(taken_at, pose, (x, y), *_thinned(points, ranges), list(self._lidars).index(scan.frame_id))
 
 

@@ -50,7 +50,7 @@ from uvf.planning.navigation.execution import Executor
 from uvf.planning.smoothing import first_part
 from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, every, optional, topic
 from uvf.runtime.contract.service import Service
-from uvf.runtime.messages.convert import cost_grid, pose2_of, seconds, stamp, yaw_of
+from uvf.runtime.messages.convert import cost_grid, pose2_of, seconds, stamp, wxyz, yaw_of
 
 Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
@@ -137,7 +137,7 @@ class TrackerService(Service):
         """One cycle at ``t`` [s, simulation]: what the directive says, slowed before obstacles that the scan shows."""
         for message in now.pose:
             self._pose = pose2_of(message.pose)
-            self._placer.move(seconds(message.timestamp), self._pose)
+            self._placer.move(seconds(message.timestamp), self._pose, wxyz(message.pose.orientation))
         self._heed_params(self._share(now.speed_map))
         controller = self._executor.controller
         self._sensors.take(controller.age, OtherReadings(now.depth, now.info, now.sonar, now.contact, now.range), controller.hidden)

@@ -6,6 +6,7 @@ from contextlib import suppress
 import numpy as np
 
 from schemas.messages import LaserScan
+from uvf.maths.rotations import level_from, matrix
 from uvf.maths.se3 import planar
 from uvf.models.vehicle.sensors import Lidar
 from uvf.runtime.messages.convert import seconds
@@ -13,6 +14,7 @@ from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.runtime.messages.readings.scans import Shape, beams_of, is_usable, sees_nothing, shape_of
 from uvf.sensors.fitted import sweeping_of
 from uvf.slam.deskew import straightened
+from uvf.slam.levelling import levelled
 from uvf.slam.reading import Beams, Reading
 
 TOGETHER = 0.3  # s between readings of two lidars that go into one keyframe
@@ -64,6 +66,9 @@ class ScanReader:
             taken_at,
             lambda times: np.array([planar(frames.lookup(self._odom, self._base, t)) for t in times.tolist()]),
         )
+        level_from_base = level_from(frames.lookup(self._odom, self._base, reading.t).rotation)
+        if level_from_base[1:3].any():
+            reading = levelled(reading, matrix(level_from_base), float(frames.lookup(self._base, scan.frame_id).translation[2]))
         self._scan_time = taken_at
         frozen, self._ranges = np.array_equal(ranges, self._ranges) and not sees_nothing(scan), ranges
         return None if frozen else reading

@@ -1,11 +1,12 @@
 """The estimates as messages."""
 
-from math import isfinite, sqrt
+from math import cos, isfinite, sin, sqrt, tan
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import EstimateQuality, Event, FrameTransform, KeyValuePair, NavState, Odometry, Vector3
+from schemas.messages import EstimateQuality, Event, FrameTransform, KeyValuePair, NavState, Odometry, Pose, Vector3
 from uvf.estimation.odometry.calibration import Scales, WheelCalibration
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.slip import sigma
@@ -13,7 +14,7 @@ from uvf.estimation.odometry.states import HEADING, POSE, SPEED
 from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2
-from uvf.runtime.messages.convert import planar_frame, planar_pose, quaternion, stamp
+from uvf.runtime.messages.convert import quaternion, stamp
 
 Floats = NDArray[np.float64]
 
@@ -22,7 +23,20 @@ PLANAR = (0, 1, 5)  # rows of a covariance in space: x, y, heading
 SIDEWAYS = 1e-4  # m^2/s^2, variance of a speed that most have none of
 
 
-def odometry(t: float, vehicle: str, odom_from_base: Pose2, drive: DriveFilter, left_over: dict[str, str]) -> Odometry:
+class Standing(NamedTuple):
+    """Height [m], roll and pitch [rad] of the ground that the vehicle stands on."""
+
+    height: float
+    roll: float
+    pitch: float
+
+    def pose(self, seen_from_above: Pose2) -> Pose:
+        """The pose in space."""
+        x, y, yaw = seen_from_above
+        return Pose(position=Vector3(x=x, y=y, z=self.height), orientation=quaternion(from_euler(self.roll, self.pitch, yaw)))
+
+
+def odometry(t: float, vehicle: str, odom_from_base: Pose, drive: DriveFilter, left_over: dict[str, str]) -> Odometry:
     """Pose of base_footprint in the odom frame [m, rad], speeds and covariances as a message stamped ``t`` [s].
 
     left_over: what the next instance needs.
@@ -35,7 +49,7 @@ def odometry(t: float, vehicle: str, odom_from_base: Pose2, drive: DriveFilter, 
         timestamp=stamp(t),
         frame_id=f"{vehicle}/odom",
         body_frame_id=f"{vehicle}/base_footprint",
-        pose=planar_pose(*odom_from_base),
+        pose=odom_from_base,
         linear_velocity=Vector3(x=linear, y=lateral),
         angular_velocity=Vector3(z=angular),
         pose_covariance=pose.ravel().tolist(),
@@ -62,21 +76,27 @@ def rate_sigmas(told: Odometry) -> tuple[float, float] | None:
     return (sqrt(forward + sideways), sqrt(turn)) if is_one else None
 
 
-def moving(t: float, vehicle: str, odom_from_base: Pose2) -> FrameTransform:
+def moving(t: float, vehicle: str, odom_from_base: Pose) -> FrameTransform:
     """The frame odom -> base_footprint stamped ``t`` [s]."""
-    return planar_frame(t, f"{vehicle}/odom", f"{vehicle}/base_footprint", odom_from_base)
+    return FrameTransform(
+        timestamp=stamp(t),
+        parent_frame_id=f"{vehicle}/odom",
+        child_frame_id=f"{vehicle}/base_footprint",
+        translation=odom_from_base.position,
+        rotation=odom_from_base.orientation,
+    )
 
 
-def nav_state(t: float, world_from_base: Pose2, velocity: Twist, position_sigma: float) -> NavState:
-    """Pose [m, rad, world] and velocity as a message stamped ``t`` [s]; position_sigma [m]."""
+def nav_state(t: float, world_from_base: Pose2, standing: Standing, velocity: Twist, position_sigma: float) -> NavState:
+    """Pose [m, rad, world] and velocity seen from above, as a message stamped ``t`` [s]; position_sigma [m]."""
     linear, angular, lateral = velocity
-    x, y, heading = world_from_base
-    c, s = np.cos(heading), np.sin(heading)
+    c, s = cos(world_from_base.yaw), sin(world_from_base.yaw)
+    pose, climbing = standing.pose(world_from_base), lateral * tan(standing.roll) - linear * tan(standing.pitch)
     return NavState(
         timestamp=stamp(t),
-        position=Vector3(x=x, y=y),
-        velocity=Vector3(x=linear * c - lateral * s, y=linear * s + lateral * c),
-        orientation=quaternion(from_euler(0.0, 0.0, heading)),
+        position=pose.position,
+        velocity=Vector3(x=linear * c - lateral * s, y=linear * s + lateral * c, z=climbing),
+        orientation=pose.orientation,
         angular_velocity=Vector3(z=angular),
         position_sigma=position_sigma,
     )

@@ -32,12 +32,19 @@ class Readings:
         self._waiting: list[Imu] = []
         self._turning = self._force = 0.0
         self._inclination = Inclination()
+        self.height = 0.0
+        """m, climbed since the start."""
         self.last: WheelTicks | None = None
 
     @property
     def resolution(self) -> float:
         """Distance [m] that a wheel rolls from one tick to the next."""
         return self.last.radians_per_tick * self._drive.wheel_radius if self.last else 0.0
+
+    @property
+    def tilt(self) -> tuple[float, float]:
+        """Roll and pitch [rad] of the ground under the vehicle."""
+        return self._inclination.tilt
 
     def take(self, wheels: WheelTicks, imu: list[Imu]) -> Step | None:
         """The step that ends with a new wheel message; None where counters jump, because they were reset or are broken."""
@@ -74,6 +81,7 @@ class Readings:
         x, y, _ = self._arm
         on_axle = self._body_from_imu @ force + (turning**2 * x + angular * y, turning**2 * y - angular * x, 0.0)
         tilting = self._inclination.step(dt, rate, on_axle, ways)
+        self.height += self._inclination.climbed(ways)
         ways, turning = self._inclination.seen_from_above(ways, rate)
         ahead = float(on_axle[0]) + turning * ways.aside / dt
         jolt, self._force = ahead - self._force, ahead

@@ -18,7 +18,7 @@ from uvf.maths.se2 import Pose2
 from uvf.models.vehicle.file import VehicleFile
 from uvf.runtime.contract.declaration import Reads, Writes, every, optional, topic
 from uvf.runtime.contract.service import Service
-from uvf.runtime.messages.convert import planar_pose, pose2_of, pose2_of_frame, seconds, stamp
+from uvf.runtime.messages.convert import pose2_of, pose2_of_frame, seconds, stamp
 from uvf.runtime.messages.wheels import counts_of, wheel_ticks
 from uvf.sensors.sampling import Due
 
@@ -128,8 +128,9 @@ class OdometryService(Service):
         except (KeyError, ValueError, TypeError):
             return
         pose = pose2_of(odometry.pose)
-        if not all(map(isfinite, pose)):
+        if not all(map(isfinite, (*pose, odometry.pose.position.z))):
             return
+        self._readings.height = odometry.pose.position.z
         self._filter.resume(pose, messages.pose_covariance(odometry), bias if isfinite(bias) else 0.0)
         self._applied = applied if all(0.7 < scale < 1.4 for scale in applied) else Scales()
         self._readings.last = wheel_ticks(seconds(odometry.timestamp), counts, 0.0)
@@ -215,10 +216,12 @@ class OdometryService(Service):
         if self._satellites is not None:
             pose = self._satellites.shown(drive.pose, odom_from_base, self.params.correction_speed / self.hz)
             sigma, known, ratio = self._satellites.sigma, self._satellites.is_known(t), self._satellites.ratio
+        standing = messages.Standing(self._readings.height, *self._readings.tilt)
+        in_odom = standing.pose(odom_from_base)
         return self.Outputs(
-            odometry=messages.odometry(t, self._vehicle, odom_from_base, drive, left_over),
-            moving=messages.moving(t, self._vehicle, odom_from_base),
-            pose=PoseInFrame(timestamp=stamp(t), frame_id="world", pose=planar_pose(*pose)),
-            nav_state=messages.nav_state(t, pose, drive.velocity, sigma),
+            odometry=messages.odometry(t, self._vehicle, in_odom, drive, left_over),
+            moving=messages.moving(t, self._vehicle, in_odom),
+            pose=PoseInFrame(timestamp=stamp(t), frame_id="world", pose=standing.pose(pose)),
+            nav_state=messages.nav_state(t, pose, standing, drive.velocity, sigma),
             quality=messages.quality(t, sigma, drive, (known, ratio)) if self._quality_due.at(t) else None,
         )

@@ -115,6 +115,11 @@ def to_euler(q: Floats) -> tuple[float, float, float]:
     return float(roll), float(pitch), float(yaw)
 
 
+def level_from(a_from_b: Floats) -> Floats:
+    """Quaternion wxyz (4,) of the tilt alone: of a frame that has b's heading and a's level, from b."""
+    return multiply(from_euler(0.0, 0.0, -to_euler(a_from_b)[2]), a_from_b)
+
+
 def enu_flu_from_ned_frd(ned_from_frd: Floats) -> Floats:
     """Attitude of the FLU body in ENU, as a quaternion wxyz (4,), from that of the FRD body in NED (4,).
 

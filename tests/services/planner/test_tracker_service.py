@@ -14,7 +14,7 @@ from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2, transform
 from uvf.maths.se3 import IDENTITY, Transform
 from uvf.planning.costmap.footprint import RobotFootprint
-from uvf.runtime.messages.convert import cost_cells, occupancy_grid, planar_pose, pose2_of, seconds, stamp
+from uvf.runtime.messages.convert import cost_cells, occupancy_grid, planar_pose, pose2_of, seconds, stamp, wxyz
 from uvf.sensors.sweeping import AT_ONCE, SPACING, Sweeping
 
 
@@ -197,7 +197,7 @@ def post_seen(sweeping, clockwise, end=1.02):
     """Bearings [rad] in the world at which its beams end, near as they are."""
     placer = ScanPlacer({"": PlacedLidar(IDENTITY, sweeping)}, 4.0)
     for message in poses_until(end):
-        placer.move(seconds(message.timestamp), pose2_of(message.pose))
+        placer.move(seconds(message.timestamp), pose2_of(message.pose), wxyz(message.pose.orientation))
     seen = placer.place(swept_post(clockwise))
     if seen is None:
         return np.zeros(0)
@@ -217,6 +217,17 @@ def test_a_sweep_counts_when_the_pose_at_its_last_beam_is_known():
     assert len(post_seen(Sweeping(SWEEP), False, end=0.96)) == 0
 
 
+def test_a_wall_seen_from_a_slope_is_where_it_is_from_above():
+    tilted = from_euler(0.0, -0.3, 0.5)
+    placer = ScanPlacer({"": PlacedLidar(Transform(IDENTITY.rotation, np.array((0.1, 0.0, 0.4))), AT_ONCE)}, 4.0)
+    for t in (0.0, 1.0):
+        placer.move(t, Pose2(2.0, 1.0, 0.5), tilted)
+    seen = placer.place(LaserScan(timestamp=stamp(1.0), start_angle=0.0, end_angle=np.pi / 2, ranges=[3.0, 3.0]))
+    upward = 0.1 * np.cos(0.3) - 0.4 * np.sin(0.3)
+    assert seen.eye == pytest.approx((upward, 0.0))
+    assert seen.points == pytest.approx(np.array(((upward + 3.0 * np.cos(0.3), 0.0), (upward, 3.0))))
+
+
 def test_a_slow_scan_is_as_old_as_its_last_beam():
     wall = scan(1.0, ahead=3.0)
     service = TrackerService("v", (BODY, FOOTPRINT), sensors_of(FOOTPRINT, sweeping=Sweeping(0.5)), TrackerParams())
@@ -230,8 +241,8 @@ def test_of_more_beams_than_are_needed_the_nearest_of_neighbours_count():
     ranges = np.full(20_000, 3.0)
     ranges[777], ranges[5000:5100] = 0.7, 0.0
     placer = ScanPlacer({"": PlacedLidar(IDENTITY, AT_ONCE)}, 4.0)
-    placer.move(0.0, Pose2(0.0, 0.0, 0.0))
-    placer.move(1.0, Pose2(0.0, 0.0, 0.0))
+    for t in (0.0, 1.0):
+        placer.move(t, Pose2(0.0, 0.0, 0.0), IDENTITY.rotation)
     seen = placer.place(LaserScan(timestamp=stamp(1.0), start_angle=-3.0, end_angle=3.0, ranges=ranges.tolist()))
     assert len(seen.ranges) <= 1440
     assert ((seen.ranges > 0.0) & (seen.ranges < 1.0)).sum() == 1

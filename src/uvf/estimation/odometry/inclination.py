@@ -1,10 +1,10 @@
-"""How the slope under a ground vehicle changes what its accelerometer feels, as it pitches and as it turns on the slope.
+"""The slope under a ground vehicle: what it changes in what the accelerometer feels, as the vehicle pitches and as it turns on the slope.
 
 A Kalman filter of gravity's forward and left parts and of the accelerometer's biases there. What turns with the ground as the vehicle
 yaws is gravity, and what stays with the vehicle is bias: they are told apart in the first turns, and not before.
 """
 
-from math import cos, sin, sqrt
+from math import asin, cos, hypot, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +19,7 @@ STEEP, BIAS = 2.0, 0.1  # m/s^2, 1 sigma at the start of gravity's parts, and of
 SHAKEN, BIAS_WALK = 0.03, 1e-3  # m/s^2 per square root of s, by which they change beside what the gyroscope says
 FELT = 0.3  # m/s^2, 1 sigma of what is felt beside gravity and bias: skidding, bumps, the speed's changes
 STRUCK, BLOW = 1.5, 0.2  # m/s^2 of difference, from which on it is a blow; s after which it is none, but ground that was not felt before
+LEVEL, KNOWN = 0.05, 0.4  # sine of a slope, below which it may be all bias; m/s^2, 1 sigma of gravity's parts from which on it is told
 STEEPEST = 0.6  # sine of a slope: more is a vehicle that is spun about, or falls
 SETTLING = 1.0  # s at rest in which the gyroscope's mean counts for its bias
 FAST, SLOW, STEADY = 0.1, 0.5, 0.1  # s, of two means of what is felt at rest; m/s^2 by which they differ where it is being tilted
@@ -54,6 +55,24 @@ class Inclination:
         self._velocity = velocity
         self._feel(dt, force[:2] - accelerated)
         return tilting
+
+    @property
+    def vertical(self) -> tuple[float, float]:
+        """Forward and left parts of the unit vector upward, base frame; zero on ground that may be level, and while it is not known."""
+        ahead, aside = np.clip(self.state[:2] / GRAVITY, -STEEPEST, STEEPEST).tolist()
+        known = float(self._p[0, 0] + self._p[1, 1]) < KNOWN**2
+        return (ahead, aside) if known and hypot(ahead, aside) > LEVEL else (0.0, 0.0)
+
+    @property
+    def tilt(self) -> tuple[float, float]:
+        """Roll and pitch [rad] about the forward and left axes: pitch is positive nose down."""
+        ahead, aside = self.vertical
+        return asin(aside / sqrt(1.0 - ahead * ahead)), -asin(ahead)
+
+    def climbed(self, ways: WheelTravel) -> float:
+        """Height [m] gained on what the wheels have rolled."""
+        ahead, aside = self.vertical
+        return ahead * (ways.left + ways.right) / 2 + aside * ways.aside
 
     def seen_from_above(self, ways: WheelTravel, rate: Floats) -> tuple[WheelTravel, float]:
         """Travel of the wheels and turning [rad/s] as they are from above, where the vehicle drives on a slope.

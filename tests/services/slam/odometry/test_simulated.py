@@ -16,7 +16,7 @@ from services.slam.build import build as slam
 from tests.launch.vehicles.foreign_robots import skid_steer
 from uvf.control.steered_ramp import velocity_ramp
 from uvf.maths.kinematics import Twist
-from uvf.maths.rotations import wrap
+from uvf.maths.rotations import to_euler, wrap
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
@@ -25,7 +25,7 @@ from uvf.models.world.file import Box
 from uvf.runtime.contract.declaration import Writes, topic
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
-from uvf.runtime.messages.convert import seconds, yaw_of
+from uvf.runtime.messages.convert import seconds, wxyz, yaw_of
 from uvf.runtime.messages.wheels import wheel_command
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -163,6 +163,10 @@ def test_on_a_ramp_the_way_is_told_as_it_is_from_above():
     assert heard["TRUTH"][-1].position.z > 0.7
     assert told.pose.position.x == pytest.approx(true.x, rel=5e-3)
     assert way > 4.0
+    state, truth = heard["NAV_STATE"][-1], heard["TRUTH"][-1]
+    assert state.position.z == pytest.approx(truth.position.z, abs=0.06)
+    assert to_euler(wxyz(state.orientation))[1] == pytest.approx(-slope, abs=0.02)
+    assert state.velocity.z == pytest.approx(np.hypot(state.velocity.x, state.velocity.y) * np.tan(slope), rel=0.1)
 
 
 def on_the_empty_floor(model, folder, file):
