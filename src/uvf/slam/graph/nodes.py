@@ -89,8 +89,7 @@ class KeyframeNodes:
 
     def still(self, i: int) -> Cloud:
         """Cloud of a keyframe without moving things: without points that more of its neighbours look through than see."""
-        cloud, stays = self.all[i].cloud, self._seen[i] >= 0
-        return Cloud(cloud.points[stays], cloud.normals[stays], cloud.weights[stays])
+        return self.all[i].cloud.chosen(self._seen[i] >= 0)
 
     def gathered(self, k: int) -> Cloud:
         """Cloud of a keyframe in its own frame; where little of it came back, along with that of those before it, for a few posts in

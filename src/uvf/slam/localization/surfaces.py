@@ -29,7 +29,7 @@ def of_keyframes(keyframes: Iterable[Keyframe], grid: GridMap) -> Cloud:
     """Surfaces that keyframes have hit and that ``grid``, the map drawn of them, still has as occupied; map frame."""
     whole = joined([cloud_of(k.reading).moved(k.map_from_base) for k in keyframes])
     stands = whole.flat & _near_occupied(grid, whole.points)
-    return _thinned(Cloud(whole.points[stands], whole.normals[stands], whole.weights[stands]))
+    return _thinned(whole.chosen(stands))
 
 
 def _near_occupied(grid: GridMap, points: Floats) -> Mask:

@@ -11,6 +11,7 @@ from uvf.maths.se2 import Pose2
 from uvf.slam.reading import Reading
 
 Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 ENOUGH = 200
 """Beams of a sweep beyond which more of them cost time and tell nothing more."""
@@ -27,6 +28,10 @@ SCANT, THIN = 0.12, 0.5
 """Shares of the beams below which little has come back, and below which it is not enough to tell the heading better than an odometry
 that has proved itself: a post here and there."""
 UNSURE = 0.3  # weight of a point whose normal is not known
+SPACING = 0.25
+"""m between points of a surface that sweeps are matched to, at most: farther away beams are wider apart, and would only meet themselves."""
+ALIKE, LEVEL = 0.95, 0.1
+"""Least cosine between normals of points on one surface, and m by which what lies between them may be off the line."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +46,8 @@ class Cloud:
     weights: Floats
     returned: float = 1.0
     """Share of the beams that came back."""
+    goes_on: Mask | None = None
+    """(n,) whether the surface goes on to the next point, seen by all beams between them; None where that is not known of any."""
 
     @property
     def is_scant(self) -> bool:
@@ -53,14 +60,25 @@ class Cloud:
         return self.returned < THIN
 
     @property
-    def flat(self) -> NDArray[np.bool_]:
+    def flat(self) -> Mask:
         """Mask (n,) of the points whose normal is known."""
-        known: NDArray[np.bool_] = (self.normals != 0.0).any(axis=1)
+        known: Mask = (self.normals != 0.0).any(axis=1)
         return known
 
     def moved(self, a_from_b: Pose2) -> "Cloud":
         """The cloud in frame a."""
-        return Cloud(*placed(self.points, self.normals, np.array(a_from_b)), self.weights)
+        return Cloud(*placed(self.points, self.normals, np.array(a_from_b)), self.weights, goes_on=self.goes_on)
+
+    def chosen(self, mask: Mask) -> "Cloud":
+        """Some of the points, by a mask (n,)."""
+        goes_on = None if self.goes_on is None else (self.goes_on & np.append(mask[1:], False))[mask]
+        return Cloud(self.points[mask], self.normals[mask], self.weights[mask], goes_on=goes_on)
+
+    def filled(self) -> "Cloud":
+        """With more points between those that are far apart on one surface."""
+        if self.goes_on is None:
+            return self
+        return Cloud(*_filled(self.points, self.normals, self.weights, self.goes_on))
 
 
 def joined(clouds: Sequence[Cloud]) -> Cloud:
@@ -68,7 +86,8 @@ def joined(clouds: Sequence[Cloud]) -> Cloud:
     if not clouds:
         return Cloud(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
     points, normals, weights = (np.concatenate([getattr(c, part) for c in clouds]) for part in ("points", "normals", "weights"))
-    return Cloud(points, normals, weights, clouds[-1].returned)
+    goes_on = np.concatenate([np.zeros(len(c.points), dtype=np.bool_) if c.goes_on is None else c.goes_on for c in clouds])
+    return Cloud(points, normals, weights, clouds[-1].returned, goes_on)
 
 
 @compiled
@@ -85,7 +104,7 @@ def placed(points: Floats, normals: Floats, pose: Floats) -> tuple[Floats, Float
 
 
 @compiled
-def _normal(points: Floats, returned: NDArray[np.bool_], i: int, reach: tuple[int, float]) -> tuple[float, float]:
+def _normal(points: Floats, returned: Mask, i: int, reach: tuple[int, float]) -> tuple[float, float]:
     """Unit normal of the line through the neighbours of point i, (0, 0) where they make none."""
     window, limit = reach
     n = sx = sy = sxx = sxy = syy = 0.0
@@ -109,7 +128,7 @@ def _normal(points: Floats, returned: NDArray[np.bool_], i: int, reach: tuple[in
 
 
 @compiled
-def _gap(points: Floats, returned: NDArray[np.bool_], i: int) -> float:
+def _gap(points: Floats, returned: Mask, i: int) -> float:
     """m, from point i to the nearer one of the beams beside it; 0 where there is none."""
     gap = np.inf
     for j in (i - 1, i + 1):
@@ -119,7 +138,7 @@ def _gap(points: Floats, returned: NDArray[np.bool_], i: int) -> float:
 
 
 @compiled
-def _normals(points: Floats, returned: NDArray[np.bool_], view: tuple[tuple[float, float], int], kept: NDArray[np.int64]) -> Floats:
+def _normals(points: Floats, returned: Mask, view: tuple[tuple[float, float], int], kept: NDArray[np.int64]) -> Floats:
     """(k, 2) of the points kept, towards the lidar; view: where that is, and the beams of the window to either side."""
     origin, window = view
     normals = np.zeros((kept.shape[0], 2))
@@ -131,6 +150,48 @@ def _normals(points: Floats, returned: NDArray[np.bool_], view: tuple[tuple[floa
         side = -1.0 if nx * vx + ny * vy > 0.0 else 1.0
         normals[k, 0], normals[k, 1] = side * nx, side * ny
     return normals
+
+
+@compiled
+def _goes_on(points: Floats, returned: Mask, kept: NDArray[np.int64], normals: Floats) -> Mask:
+    """(k,) whether the surface of a point that is kept goes on to the next one, by all the beams between them."""
+    found = np.zeros(kept.shape[0], dtype=np.bool_)
+    for k in range(kept.shape[0] - 1):
+        i, j = kept[k], kept[k + 1]
+        nx, ny = normals[k]
+        dx, dy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
+        if nx * normals[k + 1, 0] + ny * normals[k + 1, 1] < ALIKE or dx * dx + dy * dy > FAR * FAR:
+            continue
+        found[k] = True
+        for m in range(i, j + 1):
+            away = (points[m, 0] - points[i, 0]) * nx + (points[m, 1] - points[i, 1]) * ny
+            found[k] &= returned[m] and abs(away) < LEVEL
+    return found
+
+
+@compiled
+def _filled(points: Floats, normals: Floats, weights: Floats, goes_on: Mask) -> tuple[Floats, Floats, Floats]:
+    """The points, and between two on one surface as many more as ``SPACING`` asks for."""
+    more = np.zeros(points.shape[0], dtype=np.int64)
+    for i in range(points.shape[0] - 1):
+        if goes_on[i]:
+            dx, dy = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
+            more[i] = int(np.sqrt(dx * dx + dy * dy) / SPACING)
+    n = points.shape[0] + int(more.sum())
+    dense, facing, heavy = np.empty((n, 2)), np.empty((n, 2)), np.empty(n)
+    at = 0
+    for i in range(points.shape[0]):
+        dense[at], facing[at], heavy[at] = points[i], normals[i], weights[i]
+        at += 1
+        for m in range(more[i]):
+            share = (m + 1.0) / (more[i] + 1.0)
+            nx, ny = (1.0 - share) * normals[i] + share * normals[i + 1]
+            length = np.sqrt(nx * nx + ny * ny)
+            dense[at] = (1.0 - share) * points[i] + share * points[i + 1]
+            facing[at, 0], facing[at, 1] = nx / length, ny / length
+            heavy[at] = min(weights[i], weights[i + 1])
+            at += 1
+    return dense, facing, heavy
 
 
 def cloud_of(reading: Reading) -> Cloud:
@@ -145,7 +206,8 @@ def cloud_of(reading: Reading) -> Cloud:
     kept = np.flatnonzero(returned[::stride]) * stride
     normals = _normals(points, returned, (beams.origin, window_of(beams.bearings)), kept)
     weights = np.where((normals != 0.0).any(axis=1), 1.0, UNSURE)
-    return Cloud(points[kept], normals, weights, float(returned.mean()) if len(returned) else 0.0)
+    share = float(returned.mean()) if len(returned) else 0.0
+    return Cloud(points[kept], normals, weights, share, _goes_on(points, returned, kept, normals))
 
 
 def window_of(bearings: Floats) -> int:

@@ -50,8 +50,8 @@ def _order(points: Floats, corner: tuple[float, float], shape: tuple[int, int]) 
 
 
 def point_map(clouds: list[Cloud]) -> PointMap:
-    """Point map of the points whose normal is known, of clouds in one frame."""
-    whole = joined(clouds)
+    """Point map of the points whose normal is known, of clouds in one frame; surfaces far away are filled."""
+    whole = joined(clouds).filled()
     known = whole.flat
     points, normals, weights = whole.points[known], whole.normals[known], whole.weights[known]
     if len(points) == 0:
