@@ -1,6 +1,6 @@
 """Odometry and mapping for every ground vehicle of the mission, and the maps that it is given."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from services.slam.localization_service import LocalizationService, LocalizationStart
@@ -53,7 +53,7 @@ def _hosts(site: Scenario, member: MissionVehicle, warm: set[str]) -> list[Servi
         if "localization" not in warm:
             warm_up_localization()
             warm.add("localization")
-        return [_odometry(site, member), _localization(site, member, lidar, maps)]
+        return [_odometry(site, member), _localization(site, member, sensors.lidars, maps)]
     method = _method(member, mapping.method)
     if mapping.method not in warm:
         warm_up(method())
@@ -98,14 +98,14 @@ def _odometry(site: Scenario, member: MissionVehicle) -> ServiceInstance:
     return ServiceInstance(OdometryService, lambda: OdometryService(member.name, member.file, start, params, tangent), member.name)
 
 
-def _localization(site: Scenario, member: MissionVehicle, lidar: Lidar, maps: Maps) -> ServiceInstance:
+def _localization(site: Scenario, member: MissionVehicle, lidars: Sequence[Lidar], maps: Maps) -> ServiceInstance:
     """In the place of mapping. Raises BadInput for a file that is no map."""
     start, params, known = _world_from_map(member), member.params("localization", FilterParams), None
     if maps.known is not None:
         known = known_map.known_map(known_path(maps.known, site.mission_path.parent), compose(inverse(start), Pose2(*maps.known_at)))
     seed = int(site.rng(member.name, "localization").integers(1 << 31))
     beginning = LocalizationStart(known, maps.localize == "anywhere", seed)
-    return ServiceInstance(LocalizationService, lambda: LocalizationService(member.name, lidar, start, params, beginning), member.name)
+    return ServiceInstance(LocalizationService, lambda: LocalizationService(member.name, lidars, start, params, beginning), member.name)
 
 
 def _method(member: MissionVehicle, name: str) -> Callable[[], SlamMethod]:

@@ -1,5 +1,6 @@
 """Lidar scans, frames and a known map -> where the odometry frame lies in it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 
@@ -9,10 +10,9 @@ from schemas import topics
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, PlaceRequest, PosesInFrame, RelocalizeRequest, Reply
 from services.slam.placing_service import PlacingService, fix_message
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
-from uvf.maths.se3 import planar
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.declaration import Reads, Writes, frames, optional, replies, request, topic
+from uvf.runtime.contract.declaration import Reads, Writes, every, frames, optional, replies, request, topic
 from uvf.runtime.messages.convert import planar_pose, pose2_of, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.runtime.messages.maps.grids import as_map, as_message
@@ -46,6 +46,7 @@ class LocalizationService(PlacingService):
         """Scans, frames, a known map, and requests."""
 
         scan: LaserScan = topic(topics.SCAN)
+        other_scans: list[LaserScan] = optional(every(topics.OTHER_SCANS))
         frames: FrameBuffer = frames()
         known: Grid | None = optional(topics.KNOWN_MAP)
         pose: list[PlaceRequest] = request(topics.PLACE)
@@ -72,8 +73,10 @@ class LocalizationService(PlacingService):
     params: FilterParams
     fixed_params = frozenset({"least_particles", "most_particles"})
 
-    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: FilterParams, beginning: LocalizationStart) -> None:
-        super().__init__(vehicle, lidar, world_from_map)
+    def __init__(
+        self, vehicle: str, lidars: Sequence[Lidar], world_from_map: Pose2, params: FilterParams, beginning: LocalizationStart
+    ) -> None:
+        super().__init__(vehicle, lidars, world_from_map)
         self.params = params
         self._beginning = beginning
         self._localizer: Localizer | None = None
@@ -92,8 +95,8 @@ class LocalizationService(PlacingService):
             events=events,
         )
         try:
-            self._odom_from_base = planar(now.frames.lookup(self._frame("odom"), self._frame("base_footprint")))
-            if self._localizer is not None and (reading := self._scans.read(now.scan, now.frames)) is not None:
+            reading = self._reading(now.scan, now.other_scans, now.frames)
+            if self._localizer is not None and reading is not None:
                 out.fix, told = self._look(t, self._localizer, reading)
                 out.particles = self._particles(t, self._localizer)
                 events += told

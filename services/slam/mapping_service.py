@@ -15,10 +15,8 @@ from schemas import topics
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MappingRequest, MapSession, Odometry, Reply
 from services.slam.odometry.messages import rate_sigmas
 from services.slam.placing_service import PlacingService, fix_message
-from services.slam.scan_reader import OtherScans
 from services.slam.warm_up import warm_up
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
-from uvf.maths.se3 import planar
 from uvf.models.keys import key, plain
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
@@ -95,12 +93,9 @@ class MappingService(PlacingService):
         make: MakeMethod,
         left: MappingSession | None = None,
     ) -> None:
-        """lidars: the one by which the vehicle is placed, then those from which the map is drawn as well.
-
-        make: makes a method by its name; left: a session to go on with, in the vehicle's map frame."""
+        """make: makes a method by its name; left: a session to go on with, in the vehicle's map frame."""
         self.params = params
-        super().__init__(vehicle, lidars[0], world_from_map)
-        self._others = OtherScans(vehicle, lidars[1:])
+        super().__init__(vehicle, lidars, world_from_map)
         self._make = make
         self._method = make(params.method)
         self._next: tuple[str, Future[SlamMethod]] | None = None
@@ -120,10 +115,7 @@ class MappingService(PlacingService):
         out = self.Outputs(mapping=[self._asked(request) for request in now.mapping])
         events = self._begin_another(t)
         try:
-            self._odom_from_base = planar(now.frames.lookup(self._frame("odom"), self._frame("base_footprint")))
-            self._others.hear(now.other_scans, now.frames)
-            if (reading := self._scans.read(now.scan, now.frames)) is not None:
-                reading = replace(reading, others=self._others.about(reading.t))
+            if (reading := self._reading(now.scan, now.other_scans, now.frames)) is not None:
                 if now.odometry is not None:
                     reading = replace(reading, rate_sigmas=rate_sigmas(now.odometry))
                 out.fix, told = (None, []) if self._held else self._look(t, reading)

@@ -1,18 +1,23 @@
 """What places the sweeps of a vehicle in a map, drawn or given: from messages to readings, and back to frames."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import Event, FrameTransform, MapFix
-from services.slam.scan_reader import ScanReader
+from schemas.messages import Event, FrameTransform, LaserScan, MapFix
+from services.slam.scan_reader import OtherScans, ScanReader
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
+from uvf.maths.se3 import planar
 from uvf.models.vehicle.sensors import Lidar
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import planar_frame, stamp
+from uvf.runtime.messages.frames import FrameBuffer
 from uvf.slam.correction import toward
 from uvf.slam.placing_params import PlacingParams
+from uvf.slam.reading import Reading
 
 Floats = NDArray[np.float64]
 
@@ -28,13 +33,21 @@ class PlacingService(Service):
     purpose: ClassVar[str]
     """What scans without a place cannot be: the end of a sentence."""
 
-    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2) -> None:
+    def __init__(self, vehicle: str, lidars: Sequence[Lidar], world_from_map: Pose2) -> None:
+        """lidars: the one whose scans set the pace, then the others, whose newest scans go along with them."""
         self._vehicle = vehicle
-        self._scans = ScanReader(vehicle, lidar)
+        self._scans, self._others = ScanReader(vehicle, lidars[0]), OtherScans(vehicle, lidars[1:])
         self._world_from_map = world_from_map
         self._map_from_odom = self._published = self._odom_from_base = IDENTITY
         self._placeless_since: float | None = None
         self._told = False
+
+    def _reading(self, scan: LaserScan, others: Sequence[LaserScan], frames: FrameBuffer) -> Reading | None:
+        """A new scan with those of the other lidars; None where it has been seen. Raises FrameError."""
+        self._odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint")))
+        self._others.hear(others, frames)
+        reading = self._scans.read(scan, frames)
+        return None if reading is None else replace(reading, others=self._others.about(reading.t))
 
     def _wait(self, t: float, reason: str) -> list[Event]:
         """A scan may be ahead of the frames for a moment; when it lasts, a person has to know why there is no map."""

@@ -1,13 +1,13 @@
 """A sweep as points with the direction of the surface they lie on."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
-from uvf.maths.se2 import Pose2
+from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.slam.reading import Reading
 
 Floats = NDArray[np.float64]
@@ -195,6 +195,17 @@ def _filled(points: Floats, normals: Floats, weights: Floats, goes_on: Mask) -> 
 
 
 def cloud_of(reading: Reading) -> Cloud:
+    """Cloud of what the vehicle's lidars have seen, in the base frame of the first one's reading."""
+    own, here = _of_lidar(reading), reading.odom_from_base
+    besides = [r for r in reading.others if np.isfinite((*here, *r.odom_from_base)).all()]
+    if not besides:
+        return own
+    clouds = [_of_lidar(r).moved(compose(inverse(here), r.odom_from_base)) for r in besides]
+    returned = np.concatenate([r.returned for r in (reading, *besides)])
+    return replace(joined([*clouds, own]), returned=float(returned.mean()) if len(returned) else 0.0)
+
+
+def _of_lidar(reading: Reading) -> Cloud:
     """Cloud of the beams that came back, base frame; of dense sweeps every second, third ... one.
 
     Normals: principal axis of the neighbours in the order of the beams, of which none is left out.

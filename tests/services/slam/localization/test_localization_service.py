@@ -47,7 +47,7 @@ def frame(t, parent, child, pose):
 
 
 def service(known, anywhere=False):
-    return LocalizationService("v", LIDAR_FILE, WORLD_FROM_MAP, FilterParams(), LocalizationStart(known, anywhere, 3))
+    return LocalizationService("v", [LIDAR_FILE], WORLD_FROM_MAP, FilterParams(), LocalizationStart(known, anywhere, 3))
 
 
 def drive(localization, drive, known=None, asked=None):
