@@ -23,7 +23,7 @@ PLANAR = (0, 1, 5)  # rows of a covariance in space: x, y, heading
 SIDEWAYS = 1e-4  # m^2/s^2, variance of a speed that most have none of
 
 
-class Standing(NamedTuple):
+class Stance(NamedTuple):
     """Height [m], roll and pitch [rad] of the ground that the vehicle stands on."""
 
     height: float
@@ -87,11 +87,11 @@ def moving(t: float, vehicle: str, odom_from_base: Pose) -> FrameTransform:
     )
 
 
-def nav_state(t: float, world_from_base: Pose2, standing: Standing, velocity: Twist, position_sigma: float) -> NavState:
+def nav_state(t: float, world_from_base: Pose2, stance: Stance, velocity: Twist, position_sigma: float) -> NavState:
     """Pose [m, rad, world] and velocity seen from above, as a message stamped ``t`` [s]; position_sigma [m]."""
     linear, angular, lateral = velocity
     c, s = cos(world_from_base.yaw), sin(world_from_base.yaw)
-    pose, climbing = standing.pose(world_from_base), lateral * tan(standing.roll) - linear * tan(standing.pitch)
+    pose, climbing = stance.pose(world_from_base), lateral * tan(stance.roll) - linear * tan(stance.pitch)
     return NavState(
         timestamp=stamp(t),
         position=pose.position,

@@ -216,12 +216,12 @@ class OdometryService(Service):
         if self._satellites is not None:
             pose = self._satellites.shown(drive.pose, odom_from_base, self.params.correction_speed / self.hz)
             sigma, known, ratio = self._satellites.sigma, self._satellites.is_known(t), self._satellites.ratio
-        standing = messages.Standing(self._readings.height, *self._readings.tilt)
-        in_odom = standing.pose(odom_from_base)
+        stance = messages.Stance(self._readings.height, *self._readings.tilt)
+        in_odom = stance.pose(odom_from_base)
         return self.Outputs(
             odometry=messages.odometry(t, self._vehicle, in_odom, drive, left_over),
             moving=messages.moving(t, self._vehicle, in_odom),
-            pose=PoseInFrame(timestamp=stamp(t), frame_id="world", pose=standing.pose(pose)),
-            nav_state=messages.nav_state(t, pose, standing, drive.velocity, sigma),
+            pose=PoseInFrame(timestamp=stamp(t), frame_id="world", pose=stance.pose(pose)),
+            nav_state=messages.nav_state(t, pose, stance, drive.velocity, sigma),
             quality=messages.quality(t, sigma, drive, (known, ratio)) if self._quality_due.at(t) else None,
         )

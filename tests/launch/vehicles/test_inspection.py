@@ -261,3 +261,12 @@ def test_an_aircraft_that_its_engine_refuses_is_named(tmp_path):
     shutil.copytree(ROOT / "vehicles" / "milvus", tmp_path / "milvus")
     edit_yaml(tmp_path / "milvus", "air.model", "milvos")
     assert any("there is no milvos/milvos.xml" in line for line in inspect(tmp_path / "milvus").faults)
+
+
+def test_sides_that_no_lidar_sees_are_a_note(folder):
+    edit_yaml(folder, "sensors.lidar.beams", 180)
+    edit_yaml(folder, "sensors.lidar.angle_min", -1.5708)
+    found = inspect(folder)
+    assert found.faults == []
+    (line,) = [line for line in found.notes if line.startswith("no lidar sees")]
+    assert line.endswith("deg, counter-clockwise from ahead: only what was seen there before is known of")

@@ -7,10 +7,12 @@ from typing import Any
 import numpy as np
 
 from uvf.maths.raycast import Rays, cast
-from uvf.maths.rotations import from_euler, matrix, rotate
+from uvf.maths.rotations import from_euler, matrix, rotate, wrap
 from uvf.maths.se3 import Transform
+from uvf.models.checks.blind_sides import BESIDE, blind_sides
 from uvf.models.shapes.mesh import placed
 from uvf.models.shapes.scene import scene
+from uvf.models.urdf.outline import plan_outline
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.vehicle.sensors import Lidar, Mount, Sensors
 from uvf.models.yaml_data import FileLocation, Key
@@ -51,7 +53,7 @@ def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: FileL
         if not isinstance(lidar, Lidar):
             continue
         yield from _lidar_faults(lidar, place.at(*keys))
-        met = _links_met(model, lidar, poses)
+        met = [name for name in _links_met(model, lidar, poses) if name]
         if len(met) >= SHUT * lidar.beams:
             link_name = Counter(met).most_common(1)[0][0]
             yield (f"{place.at(*keys, 'mount')}: the lidar is inside of link '{link_name}' and would see nothing else; mount it outside")
@@ -75,11 +77,22 @@ def sensor_notes(model: UrdfModel, sensors: Sensors, poses: Poses, turning: set[
     for kind, example in NEEDED.items():
         if getattr(sensors, kind) is None:
             yield f"no {kind}: no mission takes it, for SLAM needs them; give it sensors: {kind}: {{{example}}}"
-    for lidar in sensors.lidars:
-        share = len(_links_met(model, lidar, poses)) / lidar.beams
+    seen_from = [(lidar, np.array([bool(name) for name in _links_met(model, lidar, poses)])) for lidar in sensors.lidars]
+    for lidar, met in seen_from:
+        share = float(met.mean())
         if 0.0 < share < SHUT:
             which = "lidar" if not sensors.other_lidars else f"lidar '{lidar.frame}'"
             yield f"{100 * share:.0f} % of the {which}'s beams meet the vehicle's own body"
+    outline = plan_outline(model)
+    if seen_from and outline is not None:
+        for first, last in blind_sides(outline[np.argsort(np.arctan2(outline[:, 1], outline[:, 0]))], seen_from):
+            side = f"from {_signed(first):.0f} to {_signed(last):.0f} deg, counter-clockwise from ahead"
+            yield f"no lidar sees what stands {BESIDE:g} m beside it {side}: only what was seen there before is known of"
+
+
+def _signed(bearing: float) -> float:
+    """Degrees, -180 to 180."""
+    return float(np.degrees(wrap(bearing)))
 
 
 def mounted(sensors: Sensors) -> Iterator[tuple[tuple[Key, ...], Any]]:
@@ -93,7 +106,7 @@ def mounted(sensors: Sensors) -> Iterator[tuple[tuple[Key, ...], Any]]:
 
 
 def _links_met(model: UrdfModel, lidar: Lidar, poses: Poses) -> list[str]:
-    """Of each beam that meets the vehicle's own body, other than the lidar's housing: the link that it meets first.
+    """Of each beam: the link of the vehicle's own body that it meets first, other than the lidar's housing; "" where it meets none.
 
     By what is seen, for collision shapes are often hulls that bridge the slot in which a scanner is.
     """
@@ -106,7 +119,7 @@ def _links_met(model: UrdfModel, lidar: Lidar, poses: Poses) -> list[str]:
     names = [name for name, solids in bodies.items() if solids]
     ranges = [cast(scene((placed(s, poses[name]) for s in bodies[name]), None), [], rays, OWN) for name in names]
     nearest = np.argmin(ranges, axis=0) if names else np.zeros(0, dtype=int)
-    return [names[link] for beam, link in enumerate(nearest) if np.isfinite(ranges[link][beam])]
+    return [names[link] if np.isfinite(ranges[link][beam]) else "" for beam, link in enumerate(nearest)] or [""] * lidar.beams
 
 
 def _houses(model: UrdfModel, link: str, lidar: Lidar, poses: Poses) -> bool:
