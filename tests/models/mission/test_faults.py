@@ -62,6 +62,27 @@ def test_a_frozen_receiver_says_the_same_with_new_stamps():
     assert seconds(late.timestamp) == 5.0
 
 
+@pytest.mark.parametrize(("part", "output"), [("imu", "imu"), ("other_scans", "other_scans")])
+def test_several_messages_of_a_step_fail_together_each_sensor_for_itself(part, output):
+    """As of an IMU that is quicker than the steps, or of two lidars."""
+
+    def step(t):
+        if output == "imu":
+            return {output: [Imu(timestamp=stamp(s), angular_velocity=Vector3(x=s)) for s in (t, t + 0.005)]}
+        return {output: [LaserScan(timestamp=stamp(t), frame_id=name, ranges=[near + t]) for name, near in (("v/a", 1.0), ("v/b", 5.0))]}
+
+    lost, frozen = (Faults([Fault("one", part, kind, at=2.0, until=4.0)]) for kind in ("lost", "frozen"))
+    assert lost.spoil(1.0, "one", step(1.0)) == step(1.0) == frozen.spoil(1.0, "one", step(1.0))
+    assert lost.spoil(3.0, "one", step(3.0)) == {}
+    held = frozen.spoil(3.0, "one", step(3.0))[output]
+    if output == "imu":
+        assert [m.angular_velocity.x for m in held] == [1.005, 1.005]
+    else:
+        assert [list(m.ranges) for m in held] == [[2.0], [6.0]]
+    assert [seconds(m.timestamp) for m in held] == [seconds(m.timestamp) for m in step(3.0)[output]]
+    assert frozen.spoil(4.0, "one", step(4.0)) == step(4.0)
+
+
 def test_a_bias_is_added_in_its_unit():
     air = Faults([Fault("one", "pitot", "bias", at=0.0, size=-50.0)]).spoil(1.0, "one", said(1.0))["air_data"]
     assert air.differential_pressure == pytest.approx(331.0)
@@ -107,6 +128,7 @@ def test_a_wheel_has_the_grip_that_its_faults_leave_it():
         ("milvus", "wheels", "it is a fixed_wing vehicle"),
         ("milvus", "left_grip", "it is a fixed_wing vehicle"),
         ("milvus", "scan", "there is no lidar among the sensors"),
+        ("burger", "other_scans", "there is no other_lidars among the sensors"),
     ],
 )
 def test_a_part_that_a_vehicle_does_not_have_is_refused(model, part, why):

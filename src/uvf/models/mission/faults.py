@@ -19,6 +19,7 @@ Part = Literal[
     "static",
     "battery",
     "scan",
+    "other_scans",
     "wheels",
     "left_grip",
     "right_grip",
@@ -30,14 +31,14 @@ Part = Literal[
 ]
 LINK = "link"
 """The radio link between a vehicle and what does not run aboard it: other vehicles, tasks, the page."""
-WITHOUT_VALUE = ("scan", "wheels", LINK)
+WITHOUT_VALUE = ("scan", "other_scans", "wheels", LINK)
 """Parts of which no single value can be off."""
 GRIPS = ("left_grip", "right_grip")
 """How well a wheel holds on to the ground."""
 ON_GROUND, IN_THE_AIR = ("wheels", *GRIPS), ("air_data", "pitot", "static", "aileron", "elevator", "rudder", "throttle")
 """Parts that only one kind of vehicle has."""
 SENSOR_OF = {
-    **{"imu": "imu", "compass": "imu", "gnss": "gnss", "scan": "lidar", "wheels": "encoders"},
+    **{"imu": "imu", "compass": "imu", "gnss": "gnss", "scan": "lidar", "other_scans": "other_lidars", "wheels": "encoders"},
     **dict.fromkeys(("air_data", "pitot", "static"), "air_data"),
 }
 """Which sensor of a vehicle's file gives what fails."""
@@ -100,7 +101,7 @@ def check_parts(faults: Sequence[Fault], files: Mapping[str, VehicleFile], place
         if fault.part in (IN_THE_AIR if file.kind == "ground" else ON_GROUND):
             raise BadInput(f"{here}: {fault.vehicle} has no {fault.part}; it is a {file.kind} vehicle")
         sensor = SENSOR_OF.get(fault.part)
-        if sensor is not None and getattr(file.sensors, sensor) is None:
+        if sensor is not None and not getattr(file.sensors, sensor):
             raise BadInput(f"{here}: {fault.vehicle} has no {fault.part}: there is no {sensor} among the sensors of its vehicle.yaml")
         if fault.part == "battery" and not file.has_battery:
             raise BadInput(f"{here}: {fault.vehicle} has no battery; give its vehicle.yaml one")

@@ -37,6 +37,7 @@ PARTS: dict[str, Where] = {
     "pitot": Where("air_data", AIR[1:]),
     "battery": Where("battery", ("remaining",), whole=True),
     "scan": Where("scan", whole=True),
+    "other_scans": Where("other_scans", whole=True),
     "wheels": Where("wheels", whole=True),
     **{name: Where("surfaces", (name,)) for name in ("aileron", "elevator", "rudder", "throttle")},
 }
@@ -47,21 +48,23 @@ class Faults:
     """Faults of a run, with the messages that frozen parts repeat."""
 
     faults: Sequence[Fault] = ()
-    _kept: dict[int, Any] = field(default_factory=dict)
+    _kept: dict[tuple[int, str], Any] = field(default_factory=dict)
+    """By the fault's number and the frame of the sensor, of which one message may carry several."""
 
     def spoil(self, t: float, vehicle: str, read: dict[str, Value]) -> dict[str, Value]:
         """Messages of a vehicle at ``t`` [s], by output, as its faults let them arrive. The messages may be changed."""
         for number, fault in enumerate(self.faults):
             where = PARTS.get(fault.part)
-            message = read.get(where.output) if where is not None else None
-            if where is None or fault.vehicle != vehicle or not isinstance(message, Message):
+            if where is None or fault.vehicle != vehicle or (value := read.get(where.output)) is None:
                 continue
-            if not fault.holds(t):
-                self._keep(number, fault, message)
-            elif fault.kind == "lost" and where.whole:
-                read = {name: value for name, value in read.items() if name != where.output}
-            else:
-                self._change(number, fault, message)
+            if fault.holds(t) and fault.kind == "lost" and where.whole:
+                read = {name: kept for name, kept in read.items() if name != where.output}
+                continue
+            for message in [value] if isinstance(value, Message) else value:
+                if fault.holds(t):
+                    self._change(number, fault, message)
+                else:
+                    self._keep(number, fault, message)
         return read
 
     def grip(self, t: float, vehicle: str) -> tuple[float, float]:
@@ -72,9 +75,9 @@ class Faults:
                 left[fault.part] *= 1.0 + fault.size if fault.kind == "bias" else 0.0
         return left["left_grip"], left["right_grip"]
 
-    def _keep(self, number: int, fault: Fault, message: Message) -> None:
+    def _keep(self, number: int, fault: Fault, message: Any) -> None:
         if fault.kind == "frozen":
-            kept = self._kept[number] = type(message)()
+            kept = self._kept[number, _frame(message)] = type(message)()
             kept.CopyFrom(message)
 
     def _change(self, number: int, fault: Fault, message: Any) -> None:
@@ -84,17 +87,20 @@ class Faults:
         elif fault.kind == "lost":
             for name in where.fields:
                 _set(message, name, 0.0)
-        elif number not in self._kept:
-            self._kept[number] = type(message)()
-            self._kept[number].CopyFrom(message)
+        elif (kept := self._kept.get((number, _frame(message)))) is None:
+            self._keep(number, fault, message)
         elif where.whole:
             stamp = type(message.timestamp)()
             stamp.CopyFrom(message.timestamp)
-            message.CopyFrom(self._kept[number])
+            message.CopyFrom(kept)
             message.timestamp.CopyFrom(stamp)
         else:
             for name in where.fields:
-                _set(message, name, _get(self._kept[number], name))
+                _set(message, name, _get(kept, name))
+
+
+def _frame(message: Any) -> str:
+    return str(getattr(message, "frame_id", ""))
 
 
 def _get(message: Any, name: str) -> float:
