@@ -16,7 +16,7 @@ from launch.vehicles.importing_air import import_aircraft
 from launch.vehicles.trial_drive import turned_share
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.se3 import apply, compose
-from uvf.models.importing.controllers import limits_of_controllers
+from uvf.models.importing.controllers import drive_of_controllers, with_controllers
 from uvf.models.importing.drive_wheels import DriveWheels, find_wheels
 from uvf.models.importing.jsbsim import jsbsim_model
 from uvf.models.importing.meshes import with_own_meshes
@@ -55,6 +55,7 @@ def import_vehicle(source: Path, folder: Path, values: XacroValues = NO_VALUES) 
         made = Path(scratch) / folder.name
         made.mkdir()
         foreign = _read(source, values)
+        foreign.drive = with_controllers(foreign.drive, drive_of_controllers(source, list(foreign.model.joints)))
         foreign.model = with_own_meshes(foreign, made)
         wheels = find_wheels(foreign)
         model = replace(rebuilt(foreign, wheels), name=folder.name)
@@ -109,7 +110,7 @@ def _write(folder: Path, source: Path, foreign: Foreign, made: tuple[DriveWheels
     data = {
         "about": f"{foreign.model.name}, imported from {source.name}.",
         "kind": "ground",
-        "ground": _ground(folder.name, wheels, model, _limits(source, foreign)),
+        "ground": _ground(folder.name, wheels, model, _limits(foreign)),
         "sensors": sensors_section(foreign, base_from_link),
     }
     foreign.notes.add(f"guessed: motors{' and the rate of the steering' if wheels.steered else ''}; set them in vehicle.yaml")
@@ -137,9 +138,9 @@ def _compare(foreign: Foreign, wheels: DriveWheels) -> None:
             foreign.notes.add(f"the plugin's {name} of {told:g} m is not that of the shapes, which counts: {found:.4g} m")
 
 
-def _limits(source: Path, foreign: Foreign) -> StatedLimits:
-    """What plugin and controllers state, the plugin first; what neither says stays None."""
-    stated = foreign.drive.limits.filled_by(limits_of_controllers(source, list(foreign.model.joints)))
+def _limits(foreign: Foreign) -> StatedLimits:
+    """What plugin and controllers state; what neither says stays None."""
+    stated = foreign.drive.limits
     if stated.source:
         foreign.notes.add("limits of speed and acceleration taken from", stated.source)
     if stated.missing:

@@ -26,11 +26,25 @@ OFF = 0.05  # share of way or turn, beyond which a vehicle does not do what its 
 
 
 class Driven(NamedTuple):
-    """x, y [m] and the angle turned [rad], simulated and by the wheels' closed-form kinematics; the largest tilt [rad]."""
+    """x, y [m] and the angle turned [rad], simulated and by the wheels' closed-form kinematics; the largest tilt [rad].
+
+    bearing: names of the links beside its wheels with which the vehicle bears on the floor at the end.
+    """
 
     pose: Floats
     expected: Floats
     tilt: float
+    bearing: tuple[str, ...]
+
+    @property
+    def remedy(self) -> str:
+        """Where to look for what keeps it from its way."""
+        borne = (
+            f"beside its wheels {', '.join(self.bearing)} bear on the floor"
+            if self.bearing
+            else "nothing but its wheels bears on the floor"
+        )
+        return f"{borne}: look at what these weigh and how they slide, and at the motors"
 
 
 def drive(folder: Path, twist: tuple[float, ...], duration: float) -> Driven:
@@ -52,7 +66,7 @@ def drive(folder: Path, twist: tuple[float, ...], duration: float) -> Driven:
             state = world.state("it")
             roll, pitch, yaw = to_euler(state.world_from_body)
             turned, last, tilt = turned + (yaw - last + np.pi) % (2 * np.pi) - np.pi, yaw, max(tilt, abs(roll), abs(pitch))
-        return Driven(np.array((*state.position[:2], turned)), expected, tilt)
+        return Driven(np.array((*state.position[:2], turned)), expected, tilt, tuple(world.bearing("it")))
     finally:
         world.close()
 
@@ -70,11 +84,15 @@ def _rolled(pose: Floats, command: Twist) -> Floats:
 
 def turned_share(folder: Path, body: GroundBody) -> float:
     """How far it turns of what its wheels say: on the spot, or of a car on an arc."""
+    driven = _turned(folder, body)
+    return float(driven.pose[2] / driven.expected[2])
+
+
+def _turned(folder: Path, body: GroundBody) -> Driven:
     tightest = body.drive.kinematics.turning_radius
     speed = min(SPEED, body.max_linear / 2) if tightest else 0.0
     rate = min(TURN_RATE, body.max_angular / 2, *([speed / (2 * tightest)] if tightest else []))
-    driven = drive(folder, (speed, rate), TURN / rate)
-    return float(driven.pose[2] / driven.expected[2])
+    return drive(folder, (speed, rate), TURN / rate)
 
 
 def trial_faults(folder: Path, body: GroundBody) -> Iterator[str]:
@@ -86,14 +104,15 @@ def trial_faults(folder: Path, body: GroundBody) -> Iterator[str]:
     if abs(x - straight.expected[0]) > OFF * WAY or abs(y) > OFF * WAY:
         yield (
             f"{place}: driven {straight.expected[0]:.2f} m straight on in the simulator it ends at ({x:.2f}, {y:.2f}) m, turned by "
-            f"{np.degrees(yaw):.0f} deg: look at what its wheels and castors bear, and at the motors"
+            f"{np.degrees(yaw):.0f} deg: {straight.remedy}"
         )
         return
-    share = turned_share(folder, body)
+    turned = _turned(folder, body)
+    share = float(turned.pose[2] / turned.expected[2])
     if abs(share - 1.0) <= OFF:
         return
     if isinstance(body.drive, SkidSteerFile) and share > 0.1:
         told, right = body.drive.effective_track, body.drive.effective_track / share
         yield f"{place.at('effective_track')}: {told:g} m, but in the simulator it turns as with {right:.4g} m"
     else:
-        yield f"{place}: in the simulator it turns by {100 * share:.0f} % of what its wheels say: look at what its wheels and castors bear"
+        yield f"{place}: in the simulator it turns by {100 * share:.0f} % of what its wheels say: {turned.remedy}"

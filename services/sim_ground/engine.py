@@ -82,6 +82,11 @@ class PhysicsEngine:
         """Joints of a vehicle by name; the link behind a joint has the joint's number."""
         return {self._joint(index, j)[1].decode(): j for j in range(self._joint_count(index))}
 
+    def link_name(self, index: int, link: int) -> str:
+        """Name of a link."""
+        name: bytes = pybullet.getBodyInfo(index, physicsClientId=self.client)[0] if link == BASE else self._joint(index, link)[12]
+        return name.decode()
+
     def axle(self, index: int, joint: int) -> Floats:
         """Axis (3,) of a joint in its link's axes of inertia."""
         return np.array(self._joint(index, joint)[13])

@@ -18,7 +18,7 @@ from services.sim_ground.guest import Course
 from services.sim_ground.loaded import LoadedVehicle, Saved
 from services.sim_ground.motor import WheelMotor
 from services.sim_ground.steering import SteeringGear
-from services.sim_ground.touching import FLOOR, SOLE, Bodies
+from services.sim_ground.touching import FLOOR, GROUND, SOLE, Bodies
 from services.sim_ground.treads import Rolling, Treads
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.rotations import IDENTITY, from_euler, multiply, rotate
@@ -228,6 +228,13 @@ class BulletWorld:
         _, x, y, _ = motion[1].tolist()
         has_fallen = 1 - 2 * (x * x + y * y) < FALLEN
         return self._bodies.felt(contacts, loaded.soles, motion, has_fallen)
+
+    def bearing(self, vehicle: str) -> list[str]:
+        """Names of the links beside its driven and steered wheels with which a vehicle bears on the ground now."""
+        loaded = self._vehicles[vehicle]
+        wheels = {*loaded.wheels, *(loaded.treads.wheels if loaded.treads is not None else ())}
+        bear = {c.link for c in self.engine.contacts(loaded.index) if c.load > 0.0 and self._bodies.names[c.other] in GROUND}
+        return sorted(self.engine.link_name(loaded.index, link) for link in bear - wheels)
 
     def put(self, name: str, solid: Solid, mass: float) -> str:
         """Adds a solid of ``mass`` [kg], 0 = fixed. Returns what it would stand in, "" when it is added."""

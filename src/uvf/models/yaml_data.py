@@ -105,6 +105,13 @@ class _Loader(_Rules, Composer, yaml.CSafeLoader):
         Composer.__init__(self)
 
 
+class _LenientLoader(_Loader):
+    """As ROS' parameter servers read: of a key given twice the last counts."""
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        return yaml.SafeLoader.construct_mapping(self, node, deep)
+
+
 class _ExactLoader(_Rules, yaml.SafeLoader):
     """Parses in Python: it names the line of a mistake where libyaml names the one behind it."""
 
@@ -136,21 +143,21 @@ def load_yaml(path: Path, type_: type[T], fill: Callable[[Any, FileLocation], An
         raise BadInput(f"{path}: nested too deeply") from error
 
 
-def read_yaml(path: Path) -> Any:
-    """Plain data of a YAML file. Raises BadInput."""
+def read_yaml(path: Path, lenient: bool = False) -> Any:
+    """Plain data of a YAML file; lenient: of keys given twice the last counts, as in files of other programs. Raises BadInput."""
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
         raise BadInput(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise BadInput(f"{path}: cannot be read: it is not text in UTF-8") from error
-    return parse_yaml(text, str(path))
+    return parse_yaml(text, str(path), lenient)
 
 
-def parse_yaml(text: str, name: str) -> Any:
-    """Plain data of the text of a YAML file called ``name``. Raises BadInput."""
+def parse_yaml(text: str, name: str, lenient: bool = False) -> Any:
+    """Plain data of the text of a YAML file called ``name``; lenient: as ``read_yaml``. Raises BadInput."""
     try:
-        data = _data(text)
+        data = yaml.load(text, _LenientLoader) if lenient else _data(text)
     except RecursionError as error:
         raise BadInput(f"{name}: nested too deeply") from error
     except yaml.YAMLError as error:

@@ -28,6 +28,7 @@ TOUCH = 0.003  # m: what is no higher touches the floor when the wheels have sun
 SINK = 0.003  # m below the floor at the start, which physics pushes out gently
 LEVEL = 1e-4  # m
 SAME = 0.03  # share by which wheel radius and track may be off
+LIGHT = 5e-4  # share of the whole mass that a wheel weighs at least: lighter ones slip and hop in any solver
 OFF_CENTRE = 0.005  # m, axle's middle from base_link
 ALONG = np.cos(np.radians(5.0))
 LOW_MARGIN = 0.1  # of the track, from the centre of mass to the edge of the supports
@@ -147,6 +148,10 @@ def _wheel_faults(body: CheckedBody, wheel: CheckedWheel, ground: FileLocation) 
         yield f'{where}: {what} would turn backwards: its axis points to the right; turn the sign of <axis xyz="...">'
     forward = np.array((forward, -forward))
     radius = max(float(reach(solid, forward).sum()) for solid in solids) / 2
+    told = [inertial.mass for name in body.model.below(joint.child) if (inertial := body.model.links[name].inertial) is not None]
+    if told and body.mass is not None and sum(told) < LIGHT * body.mass.mass:
+        weighs = f"weighs {1000 * sum(told):.3g} g, the vehicle {body.mass.mass:.3g} kg"
+        yield f"{where}: {what} {weighs}: so light a wheel slips and hops; give its link a wheel's mass and inertia"
     if abs(radius - drive.wheel_radius) > SAME * drive.wheel_radius:
         yield f"{ground.at('drive', 'wheel_radius')}: {drive.wheel_radius:g} m, but the {what} of the URDF has a radius of {radius:.4g} m"
 

@@ -1,6 +1,6 @@
 """Measures and masses that no ground vehicle has: of files in millimetres or grams."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,24 +17,32 @@ SIDES: NDArray[np.float64] = np.vstack((np.eye(3), -np.eye(3)))
 
 def size_faults(model: UrdfModel, poses: Mapping[str, Transform]) -> Iterator[str]:
     """A vehicle larger than any, and links that are heavier than their measures allow."""
-    farthest = [extent for name in poses if (extent := _extents(model.links[name], poses[name])) is not None]
-    if farthest:
-        across = np.max([low_high[0] for low_high in farthest], axis=0) - np.min([low_high[1] for low_high in farthest], axis=0)
-        if across.max() > LARGEST:
-            longest = across.max()
+    whole = _box(model, poses, poses)
+    if whole is not None:
+        longest = float((whole[0] - whole[1]).max())
+        if longest > LARGEST:
             yield f"{model.path}: the vehicle is {longest:.4g} m across; give metres (if these are millimetres: {longest / 1000:.4g} m)"
     for name in poses:
-        yield from _heavy(model, model.links[name])
+        yield from _heavy(model, model.links[name], poses)
 
 
-def _heavy(model: UrdfModel, link: Link) -> Iterator[str]:
-    extents = _extents(link, IDENTITY)
+def _heavy(model: UrdfModel, link: Link, poses: Mapping[str, Transform]) -> Iterator[str]:
+    """Where what is fast to a link tells no mass, its own is that of all of them."""
+    fast = [name for name in model.rigid_with(link.name) if name in poses]
+    tells = [name for name in fast if model.links[name].inertial is not None]
+    extents = _box(model, fast, poses) if tells == [link.name] else _extents(link, IDENTITY)
     if link.inertial is None or extents is None:
         return
     volume, mass = float(np.prod(extents[0] - extents[1])), link.inertial.mass
     if volume > SMALLEST and mass > HEAVIEST * volume:
         what = f"link '{link.name}' weighs {mass:.4g} kg in a box of {1000 * volume:.3g} l, more than gold would; give kilograms"
         yield str(ModelFault(model.path, link.line, what))
+
+
+def _box(model: UrdfModel, names: Iterable[str], poses: Mapping[str, Transform]) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Highest and lowest corner (3,) [m, base_link] of the box about some links; None where they have no shapes."""
+    found = [extents for name in names if (extents := _extents(model.links[name], poses[name])) is not None]
+    return (np.max([high for high, _ in found], axis=0), np.min([low for _, low in found], axis=0)) if found else None
 
 
 def _extents(link: Link, frame_from_link: Transform) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:

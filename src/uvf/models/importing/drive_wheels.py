@@ -1,10 +1,9 @@
 """Which joints drive a vehicle, which way is up and which is forward: guessed from axes, places and names."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +13,9 @@ from uvf.maths.se3 import IDENTITY, Transform, apply, inverse
 from uvf.maths.wheels.scrubbing import Scrubbing, scrubbing, shared_loads
 from uvf.models.importing.omni_wheels import meeting_point, ring_of
 from uvf.models.importing.robot import Foreign
-from uvf.models.importing.steered_wheels import car_of
-from uvf.models.importing.wheel_guess import CASTORS, Pair, WheelGuess, loosened_wheels, may_turn, shapes_below, wheel_on
-from uvf.models.shapes.mesh import reach
+from uvf.models.importing.steered_wheels import UPRIGHT, car_of, steering_of, with_rolling_wheels
+from uvf.models.importing.wheel_guess import CASTORS, Pair, WheelGuess, loosened_wheels, may_turn, wheel_on
+from uvf.models.importing.which_way import LEFT, RIGHT, left_is_first, names_of, row, up_of
 from uvf.models.urdf.inertia import whole
 from uvf.models.urdf.robot import Joint, UrdfModel
 from uvf.models.yaml_data import BadInput
@@ -26,18 +25,11 @@ Floats = NDArray[np.float64]
 PARALLEL = 0.97
 LEVEL, OFF_FLOOR = 0.3, 0.35  # of an axis' z, and of a radius
 ROCKS = 0.7  # cosine between the axes of a rocker and its wheel, at least
+MIDDLE = 0.3  # of the radius, that a wheel may be off the middle of an axle of which it stands for both ends
 ALIKE = 0.12  # share by which the radii of a pair may differ, and the tracks of pairs that drive together
 MECANUM = re.compile(r"mecan|omni.?wheel|swedish", re.I)
 PASSIVE = re.compile(r"cast[eo]r|swivel|passive|idler|fork|steer|pivot|omni|follow", re.I)
 DRIVEN = re.compile(r"wheel|whl|tire|tyre|ruota|rueda|roue|rad\b|drive|motor|trac", re.I)
-LEFT = re.compile(
-    r"left|izq|sinist|gauche|link?s|(^|[_\-.0-9])l([_\-.0-9]|$)|^l(w|wheel|m)|wheel_?l($|_)|wl($|_)|(?-i:[a-z]L($|[_A-Z]))",
-    re.I,
-)
-RIGHT = re.compile(
-    r"right|der(echa)?_|destr|droit|recht|(^|[_\-.0-9])r([_\-.0-9]|$)|^r(w|wheel|m)|wheel_?r($|_)|wr($|_)|(?-i:[a-z]R($|[_A-Z]))",
-    re.I,
-)
 
 
 @dataclass(frozen=True)
@@ -96,13 +88,18 @@ def _track(left: tuple[WheelGuess, ...], right: tuple[WheelGuess, ...]) -> float
 
 def find_wheels(foreign: Foreign) -> DriveWheels:
     """The joints that drive a vehicle. Raises BadInput, with what a person must do, where there are none."""
-    model = foreign.model
+    model = foreign.model = with_rolling_wheels(foreign.model)
     turning = [joint for joint in model.joints.values() if may_turn(joint, _is_called_wheel(joint))]
     wheels = [wheel for joint in turning if (wheel := wheel_on(model, joint)) is not None]
     if ring := ring_of(wheels):
         return _omni(ring, wheels, foreign)
     pairs = [(a, b) for a, b in combinations(wheels, 2) if _opposite(a, b)]
-    if not pairs and (loosened := loosened_wheels(foreign)):
+    if virtual := [wheel.joint for wheel in wheels if any(_in_the_middle(wheel, pair) for pair in pairs)]:
+        foreign.notes.add("wheels in the middle of an axle, which stand for both at its ends, left out", ", ".join(j.name for j in virtual))
+        foreign.model = without(model, virtual)
+        return find_wheels(foreign)
+    only_steered = all(steering_of(model, wheel) is not None for pair in pairs for wheel in pair)
+    if only_steered and (loosened := loosened_wheels(foreign)):
         foreign.notes.add("wheels that are fixed in the file are taken to turn; check what drives it", ", ".join(loosened))
         foreign.model = replace(model, joints=model.joints | loosened)
         return find_wheels(foreign)
@@ -117,10 +114,29 @@ def find_wheels(foreign: Foreign) -> DriveWheels:
     if (car := car_of(foreign, pairs)) is not None:
         straight, steered = car
         return with_steering(_oriented([straight], wheels, foreign), steered)
+    alone = [wheel.joint.name for wheel in wheels if steering_of(model, wheel) is not None and not any(wheel in pair for pair in pairs)]
+    if alone:
+        foreign.notes.add(
+            "a wheel that is steered alone, as of a tricycle or a forklift, is not simulated: it only slides along", ", ".join(alone)
+        )
     middle = np.mean([p.translation for p in model.link_poses().values()], axis=0)
     lowest = min(_bottom(pair) for pair in pairs)
     best = max(pairs, key=lambda pair: _score(pair, foreign, (middle, lowest)))
     return _oriented([best, *_more_pairs(best, pairs, foreign)], wheels, foreign)
+
+
+def _in_the_middle(wheel: WheelGuess, pair: Pair) -> bool:
+    """Whether a wheel stands halfway between two like it, and nothing hangs on it."""
+    a, b = pair
+    apart = float(np.linalg.norm(wheel.centre - (a.centre + b.centre) / 2))
+    return apart < MIDDLE * wheel.radius and abs(wheel.radius - a.radius) <= ALIKE * a.radius and wheel.joint not in (a.joint, b.joint)
+
+
+def without(model: UrdfModel, joints: Iterable[Joint]) -> UrdfModel:
+    """The model without these joints and all that hangs on them."""
+    gone = {name for joint in joints for name in model.below(joint.child)}
+    kept = {name: joint for name, joint in model.joints.items() if joint.child not in gone}
+    return replace(model, links={name: link for name, link in model.links.items() if name not in gone}, joints=kept)
 
 
 def _omni(ring: tuple[WheelGuess, ...], wheels: list[WheelGuess], foreign: Foreign) -> DriveWheels:
@@ -166,21 +182,24 @@ def _more_pairs(best: Pair, pairs: list[Pair], foreign: Foreign) -> list[Pair]:
         passive = _is_passive(pair) and not _is_passive(best)
         drives = all(w.joint.name in told for w in pair) if told else called and not passive
         steered = not slide and any(swivels(foreign.model, w.joint) for w in pair)
-        if drives and not steered and not any(w.joint.name in taken for w in pair) and _alike(best, pair):
+        if any(w.joint.name in taken for w in pair) or not _alike(best, pair):
+            continue
+        if drives and not steered:
             found.append(pair)
+        elif called and not told:
+            names = ", ".join(w.joint.name for w in pair)
+            foreign.notes.add(
+                "wheels like those that drive, taken for castors; name them in a plugin or controller if they drive, too", names
+            )
     return found
 
 
 def _is_passive(pair: Pair) -> bool:
-    return any(PASSIVE.search(name) for name in _names(pair))
-
-
-def _names(pair: Pair) -> list[str]:
-    return [w.joint.name + " " + w.joint.child for w in pair]
+    return any(PASSIVE.search(name) for name in names_of(pair))
 
 
 def _called_driven(pair: Pair) -> bool:
-    return all(DRIVEN.search(name) for name in _names(pair))
+    return all(DRIVEN.search(name) for name in names_of(pair))
 
 
 def _alike(a: Pair, b: Pair) -> bool:
@@ -194,14 +213,14 @@ def _alike(a: Pair, b: Pair) -> bool:
 
 
 def swivels(model: UrdfModel, joint: Joint) -> bool:
-    """Whether a wheel hangs in a fork that turns too, or is called a castor. A rocker turns as the wheel does, a spring slides."""
+    """Whether a wheel hangs in a fork that turns too, or is called a castor. A rocker turns as the wheel does or rolls, a spring slides."""
     if any(word in f"{joint.name} {joint.child}".lower() for word in CASTORS):
         return True
     fork, poses = model.parents.get(joint.parent), model.link_poses()
     if fork is None or fork.kind not in ("revolute", "continuous") or not {fork.child, joint.child} <= poses.keys():
         return False
     axes = [rotate(poses[each.child].rotation, each.axis) for each in (fork, joint)]
-    return abs(float(axes[0] @ axes[1])) < ROCKS
+    return abs(float(axes[0] @ axes[1])) < ROCKS and abs(float(axes[0][2])) > UPRIGHT
 
 
 def _opposite(a: WheelGuess, b: WheelGuess) -> bool:
@@ -221,7 +240,7 @@ def _bottom(pair: Pair) -> float:
 def _score(pair: Pair, foreign: Foreign, about: tuple[Floats, float]) -> tuple[float, ...]:
     """about: the middle of the links (3,) [m], and the height of the lowest pair [m]. Wheels that do not reach the floor drive nothing."""
     middle, lowest = about
-    names = _names(pair)
+    names = names_of(pair)
     told = {*foreign.drive.left, *foreign.drive.right}
     score = 10.0 * all(w.joint.name in told for w in pair)
     score += 2.0 * _called_driven(pair) - 5.0 * any(PASSIVE.search(n) for n in names)
@@ -235,8 +254,8 @@ def _score(pair: Pair, foreign: Foreign, about: tuple[Floats, float]) -> tuple[f
 def _oriented(pairs: list[Pair], wheels: list[WheelGuess], foreign: Foreign) -> DriveWheels:
     a, b = pairs[0]
     lateral = (a.centre - b.centre) / np.linalg.norm(a.centre - b.centre)
-    up = _up(foreign, lateral, a)
-    side = lateral if _left_is_first(pairs[0], foreign, up) else -lateral
+    up = up_of(foreign, lateral, a)
+    side = lateral if left_is_first(pairs[0], foreign, up) else -lateral
     forward = np.cross(side, up)
     forward /= np.linalg.norm(forward)
     pairs = sorted(pairs, key=lambda pair: -float((pair[0].centre + pair[1].centre) @ forward))
@@ -248,7 +267,7 @@ def _oriented(pairs: list[Pair], wheels: list[WheelGuess], foreign: Foreign) -> 
     kind, turning = _turning(pairs, driven, (middle, axes), foreign)
     root_from_base = Transform(from_matrix(axes), middle + axes @ np.array((*turning.pivot, -radius)))
     if abs(forward[0]) < 0.99 or up[2] < 0.99:
-        foreign.notes.add(f"axes turned: forward was {_row(forward)} and up {_row(up)} in the file's root")
+        foreign.notes.add(f"axes turned: forward was {row(forward)} and up {row(up)} in the file's root")
     return DriveWheels(left, right, tuple(w for w in wheels if w not in driven), inverse(root_from_base), turning.track, kind)
 
 
@@ -269,56 +288,3 @@ def _turning(pairs: list[Pair], driven: tuple[WheelGuess, ...], frame: tuple[Flo
         "from the middle of the wheels, where base_link is put"
     )
     return "skid_steer", found
-
-
-def _up(foreign: Foreign, lateral: Floats, wheel: WheelGuess) -> Floats:
-    """z unless the axle is upright then; else the direction in which the wheels are lowest."""
-    best = np.array((0.0, 0.0, 1.0))
-    if abs(lateral[2]) >= 0.3:
-        options = [d for d in _six() if abs(d @ lateral) < 0.3]
-        poses = foreign.model.link_poses()
-        everything = [s for name in foreign.model.roots[:1] for s in shapes_below(foreign.model, name, poses)]
-        lows = [max(float(reach(s, -d[None])[0]) for s in everything) + float(wheel.centre @ d) for d in options]
-        best = options[int(np.argmin(lows))]
-    level = best - (best @ lateral) * lateral
-    up: Floats = level / np.linalg.norm(level)
-    return up
-
-
-def _six() -> Iterator[Floats]:
-    for sign in (1.0, -1.0):
-        yield from sign * np.eye(3)[::-1]
-
-
-def _left_is_first(pair: Pair, foreign: Foreign, up: Floats) -> bool:
-    """x forward counts (REP-103); where x is no way to drive, names or the plugin say what is left."""
-    a, b = pair
-    forward = np.cross((a.centre - b.centre) / np.linalg.norm(a.centre - b.centre), up)
-    by_names = _by_names(a, b, foreign)
-    if abs(forward[0]) > 0.7:
-        if by_names is not None and by_names != (forward[0] > 0):
-            foreign.notes.add("left and right exchanged: by their places with x forward the wheels are on the other sides than named")
-        return bool(forward[0] > 0)
-    if by_names is None:
-        foreign.notes.add("guessed which wheel is left: neither x nor the names tell; check the direction of driving")
-        return bool(forward[np.argmax(np.abs(forward))] > 0)
-    return by_names
-
-
-def _by_names(a: WheelGuess, b: WheelGuess, foreign: Foreign) -> bool | None:
-    """Whether the first is called left; None = not told."""
-    for wheel, if_left in ((a, True), (b, False)):
-        if wheel.joint.name in foreign.drive.left:
-            return if_left
-    names = _names((a, b))
-    lefts = [bool(LEFT.search(n)) and not RIGHT.search(n) for n in names]
-    rights = [bool(RIGHT.search(n)) and not LEFT.search(n) for n in names]
-    if (lefts[0] and not lefts[1]) or (rights[1] and not rights[0]):
-        return True
-    if (lefts[1] and not lefts[0]) or (rights[0] and not rights[1]):
-        return False
-    return None
-
-
-def _row(values: NDArray[Any]) -> str:
-    return "(" + ", ".join(f"{round(float(v), 2) + 0.0:g}" for v in values) + ")"

@@ -23,10 +23,12 @@ Floats = NDArray[np.float64]
 BASE = "base_link"
 DOWN = np.array(((0.0, 0.0, -1.0),))
 Y, Z = np.array((0.0, 1.0, 0.0)), np.array((0.0, 0.0, 1.0))
+LEAST_WHEEL = 5e-4  # of the body's mass: a wheel that is lighter in its file has been left without one
 LIGHT = 0.01  # kg, of a steering that weighs nothing in the file
 SLIDE = "wheels that neither drive nor swivel became balls that slide"
 LOW = 0.004  # m above the floor, within which a shape is meant to touch it
 LIFT = 0.0005  # m
+CLEAR = 0.008  # m above the floor, of a body that wheels carry
 NEAR_FLOOR = 0.35  # of the wheel's radius: what a castor's link may be off the floor
 
 
@@ -84,10 +86,15 @@ def _weighed(parts: _Parts, foreign: Foreign) -> dict[str, Link]:
         return {name: mended(link, name == BASE, foreign.notes) for name, link in parts.links.items()}
     shapes = {kind: tuple(placed(s, body[n]) for n in body for s in getattr(parts.links[n], kind)) for kind in ("visuals", "collisions")}
     whole = mended(Link(BASE, joined(given), shapes["visuals"], shapes["collisions"]), True, foreign.notes)
-    return {
-        name: replace(link, inertial=whole.inertial if name == BASE else None) if name in body else mended(link, False, foreign.notes)
-        for name, link in parts.links.items()
-    }
+    assert whole.inertial is not None
+    least, found = LEAST_WHEEL * whole.inertial.mass, dict(parts.links)
+    for name, link in parts.links.items():
+        if name in body:
+            found[name] = replace(link, inertial=whole.inertial if name == BASE else None)
+            continue
+        weightless = bool(link.collisions) and link.inertial is not None and link.inertial.mass < least
+        found[name] = mended(replace(link, inertial=None) if weightless else link, False, foreign.notes)
+    return found
 
 
 def _sound(link: Link, foreign: Foreign) -> Inertial | None:
@@ -241,6 +248,12 @@ def _lower_feet(parts: _Parts, foreign: Foreign) -> None:
     """Shapes of base_link that touch the floor become links of their own, for they slide as castors do."""
     base = parts.links[BASE]
     feet = [s for s in base.collisions if abs(-float(reach(s, DOWN)[0])) <= LOW]
+    if feet and len(parts.wheels.driven) + len(parts.wheels.steered or ()) > 2:
+        parts.links[BASE] = replace(base, collisions=tuple(_raised(s) if s in feet else s for s in base.collisions))
+        foreign.notes.add(
+            f"shapes of the body that touch the floor raised to {CLEAR * 1000:g} mm above it, for its wheels carry it", f"{len(feet)}"
+        )
+        return
     if not feet or len(feet) == len(base.collisions):
         return
     parts.links[BASE] = replace(base, collisions=tuple(s for s in base.collisions if s not in feet))
@@ -250,6 +263,12 @@ def _lower_feet(parts: _Parts, foreign: Foreign) -> None:
         parts.links[name] = Link(name, None, (), (replace(foot, name=name, position=np.zeros(3)),))
         parts.joints[f"castor_{i}_joint"] = Joint(f"castor_{i}_joint", "fixed", BASE, name, at)
     foreign.notes.add("shapes of the body that touch the floor made castors that slide", f"{len(feet)}")
+
+
+def _raised(solid: Solid) -> Solid:
+    """A shape of base_link with its lowest point at ``CLEAR``."""
+    low = -float(reach(solid, DOWN)[0])
+    return replace(solid, position=solid.position + np.array((0.0, 0.0, CLEAR - low)))
 
 
 def _lift_castors(parts: _Parts, foreign: Foreign) -> None:

@@ -25,7 +25,7 @@ class ForeignSensor:
     link_from_sensor: Transform = IDENTITY
 
 
-SIDEWAYS = ("mecanum", "planar_move", "planarmove", "omni")
+SIDEWAYS = ("mecanum", "planar_move", "planarmove", "omni", "force_based_move")
 """In the names of plugins that drive a robot sideways, too."""
 JOINTS = ("{}joint", "{}frontjoint", "{}rearjoint", "front{}joint", "back{}joint", "rear{}joint")
 LIMITS = {

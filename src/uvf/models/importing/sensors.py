@@ -28,6 +28,7 @@ SEVERAL = {"sonar": "sonars", "range": "rangefinders"}
 """Kinds of which a vehicle may have any number, and their sections."""
 LEVEL, FAR = 0.99, 30.0  # of the axis' z, and m
 NARROW, FEW = 0.6, 30  # rad and beams, below which rays are the cone of one reading
+BEAM, NEAR = 0.1, 1.0  # rad and m, below which they are one beam, as of a cliff sensor
 FIGURES = ("samples", "resolution", "min_angle", "max_angle", "min", "max", "stddev", "update_rate", "horizontal_fov", "width", "height")
 LINK_KINDS = {"lidar": "ray", "imu": "imu", "camera": "camera"}
 
@@ -38,7 +39,8 @@ def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> S
     for sensor in sorted((*foreign.sensors, *_by_names(foreign)), key=lambda each: _rank(each, base_from_link)):
         _tell_odd(sensor, foreign)
         if sensor.kind.lower() in BUMPERS and sensor.link in base_from_link:
-            section.setdefault("bumpers", []).append(_bumper(sensor.link, foreign, base_from_link[sensor.link]))
+            bumper, felt = _bumper(sensor.link, foreign, base_from_link[sensor.link]), section.setdefault("bumpers", [])
+            felt += [bumper] if bumper not in felt else []  # a file has one for each shape of a link
             continue
         kind, make = _kind(sensor)
         if make is None or sensor.link not in base_from_link:
@@ -46,10 +48,9 @@ def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> S
             continue
         base_from_sensor = compose(base_from_link[sensor.link], sensor.link_from_sensor)
         mount, frame = _mount(base_from_sensor), sensor.link if _is_link_itself(sensor) else f"{sensor.link}_{kind}"
-        if kind == "lidar" and "lidar" in section:
-            if not _is_level(base_from_sensor):
-                foreign.notes.add("lidars that are not level dropped", sensor.link)
-                continue
+        if kind == "lidar" and not _is_level(base_from_sensor):
+            foreign.notes.add("lidars that are not level dropped", sensor.link)
+        elif kind == "lidar" and "lidar" in section:
             others = section.setdefault("other_lidars", [])
             taken = {section["lidar"]["frame"], *(other["frame"] for other in others)}
             others.append({"mount": mount, **make(sensor, foreign), "frame": frame if frame not in taken else f"{frame}_{len(others) + 2}"})
@@ -111,6 +112,8 @@ def _kind(sensor: ForeignSensor) -> tuple[str, Callable[[ForeignSensor, Foreign]
     if kind in LIDARS and sensor.element is not None and sensor.element.find(".//horizontal") is not None:
         beams, fan = _fan(sensor)
         if beams <= 1:
+            return "range", _range_finder
+        if fan < BEAM and _number(sensor, "range/max", FAR) < NEAR:
             return "range", _range_finder
         if fan < NARROW and beams < FEW:
             return "sonar", _sonar

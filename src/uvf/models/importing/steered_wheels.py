@@ -1,15 +1,24 @@
 """Whether a robot is a car: a pair of wheels that are steered, and one that stays straight."""
 
+import re
 from collections.abc import Sequence
+from dataclasses import replace
 from math import atan, tan
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uvf.maths.rotations import rotate
 from uvf.models.importing.robot import Foreign
-from uvf.models.importing.wheel_guess import CASTORS, Pair, WheelGuess
-from uvf.models.urdf.robot import Joint, UrdfModel
+from uvf.models.importing.wheel_guess import CASTORS, WHEEL, Pair, WheelGuess, wheel_on
+from uvf.models.urdf.robot import Joint, Link, UrdfModel
 
+Floats = NDArray[np.float64]
+
+STEERS = re.compile(r"steer|hinge")
+UP = np.array((0.0, 0.0, 1.0))
+
+UPRIGHT = 0.7  # of z, that a steering's axis has at least: a rocker rolls
 ACROSS = 0.2  # cosine, of a steering's axis with its wheel's at most
 TRAIL = 0.35  # of the radius, by which a wheel may stand behind its steering's axis: castors stand farther
 MOST = 0.5  # rad, where the file has no limits
@@ -27,8 +36,44 @@ def steering_of(model: UrdfModel, wheel: WheelGuess) -> Joint | None:
         return None
     axis, arm = rotate(poses[fork.child].rotation, fork.axis), wheel.centre - poses[fork.child].translation
     trail = abs(float(arm @ np.cross(axis, wheel.axis)))
+    if abs(axis[2]) < UPRIGHT:
+        return None
     named = any(word in f"{fork.name} {fork.child} {wheel.joint.name}".lower() for word in CASTORS)
     return None if named or abs(axis @ wheel.axis) > ACROSS or trail > TRAIL * wheel.radius else fork
+
+
+def with_rolling_wheels(model: UrdfModel) -> UrdfModel:
+    """The model with a rolling joint for each wheel that hangs on its steering without one, as in files made to be looked at."""
+    found = [(joint, link) for joint in model.joints.values() if (link := _steered_alone(model, joint)) is not None]
+    links, joints = dict(model.links), dict(model.joints)
+    for joint, axis in found:
+        wheel, below = f"{joint.child}_rolling", model.links[joint.child]
+        links |= {joint.child: Link(joint.child, line=below.line), wheel: replace(below, name=wheel)}
+        joints |= {n: replace(j, parent=wheel) for n, j in joints.items() if j.parent == joint.child}
+        joints[f"{joint.name}_rolling"] = Joint(f"{joint.name}_rolling", "continuous", joint.child, wheel, axis=axis, line=joint.line)
+        upright = replace(joint, axis=UP) if joint.kind == "continuous" else joint
+        joints[joint.name] = replace(upright, kind="revolute", mimics=None)
+    return replace(model, links=links, joints=joints) if found else model
+
+
+def _steered_alone(model: UrdfModel, joint: Joint) -> Floats | None:
+    """The axis (3,) in its link about which a wheel would roll that only a steering turns; None for what is none."""
+    poses, called = model.link_poses(), f"{joint.name} {joint.child}".lower()
+    if joint.kind not in ("revolute", "continuous") or joint.child not in poses or not WHEEL.search(called):
+        return None
+    axis = rotate(poses[joint.child].rotation, joint.axis)
+    narrow = joint.kind == "revolute" and joint.limits is not None and 0.0 < joint.limits[1] - joint.limits[0] < np.pi
+    if not (narrow and abs(axis[2]) > UPRIGHT) and not (STEERS.search(called) and wheel_on(model, joint) is None):
+        return None
+    rolls = any(below.parent == joint.child and below.kind != "fixed" for below in model.joints.values())
+    if rolls or any(word in called for word in CASTORS):
+        return None
+    for across in (np.array((0.0, 1.0, 0.0)), np.array((1.0, 0.0, 0.0))):
+        turning = replace(joint, kind="continuous", axis=across)
+        wheel = wheel_on(model, turning)
+        if wheel is not None and wheel.width < 2 * wheel.radius and abs(wheel.axis[2]) < ACROSS:
+            return across
+    return None
 
 
 def car_of(foreign: Foreign, pairs: Sequence[Pair]) -> tuple[Pair, Pair] | None:

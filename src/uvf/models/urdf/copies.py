@@ -15,7 +15,7 @@ from typing import Any
 from lxml import etree
 
 from uvf.models.urdf.marked import XACRO, marked
-from uvf.models.urdf.packages import is_file, package_folder
+from uvf.models.urdf.packages import installed, is_file, package_folder
 from uvf.models.yaml_data import BadInput
 
 FIND = re.compile(r"\$\(find\s+([^)]+?)\s*\)")
@@ -133,7 +133,10 @@ class Copies:
 
     def _original(self, name: str) -> Path | None:
         start, folder = self._root(name)
-        return folder / name.removeprefix(start).lstrip("/") if folder is not None else None
+        if folder is None:
+            return None
+        path = folder / name.removeprefix(start).lstrip("/")
+        return path if WILD.search(name) or is_file(path) else installed(path) or path
 
     def _matching(self, spec: str) -> Iterator[str]:
         start, folder = self._root(spec)

@@ -1,6 +1,7 @@
 """Files of ROS packages without a ROS installation: looked for about the file that names them."""
 
 import contextlib
+import glob
 from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
@@ -33,6 +34,18 @@ def _in_workspace(folder: Path, package: str) -> Path | None:
     return None
 
 
+def installed(path: Path) -> Path | None:
+    """The file that an installed package would have at a path where its sources have none: one folder deeper, or two.
+
+    Packages of ros2_control's template keep under ``description`` what they install at the top.
+    """
+    package = next((folder for folder in list(path.parents)[:PARENTS_SEARCHED] if (folder / "package.xml").is_file()), None)
+    if package is None:
+        return None
+    rest = glob.escape(str(path.relative_to(package)))
+    return next((found for deeper in ("*", "*/*") for found in sorted(package.glob(f"{deeper}/{rest}")) if is_file(found)), None)
+
+
 def find_mesh(path: Path, name: str) -> Path | None:
     """The file that a mesh's name stands for: package://, model://, file:// or a path beside the URDF; else one of the same
     name below the folders about it."""
@@ -42,7 +55,9 @@ def find_mesh(path: Path, name: str) -> Path | None:
     else:
         package, _, inside = rest.partition("/")
         folder = package_folder(path, package)
-        tries = [*([folder / inside] if folder else []), *(parent / inside for parent in _near(path))]
+        there = folder / inside if folder else None
+        deeper = installed(there) if there is not None and not is_file(there) else None
+        tries = [*(each for each in (there, deeper) if each is not None), *(parent / inside for parent in _near(path))]
     found = next((p for p in tries if is_file(p)), None)
     return found or _beside(path, Path(rest).name)
 

@@ -88,6 +88,7 @@ def local_window(costs: Costmap, here: Point, path: Floats, factors: Floats, set
         blocked_headings(occupied, costs.resolution, footprint)
         for footprint in (costs.footprint, costs.footprint.padded(settings.soft_margin))
     )
+    close |= blocked_headings(~seen, costs.resolution, costs.footprint)
     return Grids(values, seen, blocked, close, to_go.astype(np.float32), off_path.astype(np.float32), (*corner, costs.resolution))
 
 

@@ -23,8 +23,10 @@ Planes = Sequence[tuple[float, Colour | None]]
 LEVEL = 1e-3  # m
 MARGIN = 1.0  # m of floor about the outermost thing
 SLAB_SHARE = 0.5  # of the floor that a level surface covers to count as the ground, and of the things that stand above it
-THICKEST_SLAB = 0.5  # m
+OVER_TILES = 0.8  # of the other things that stand over slabs laid side by side that are the ground
+THICKEST_SLAB = 1.5  # m
 SHORTEST_SLAB = 3.0  # m
+DEEP, SUNK_SHARE, SUNK_AREA = 0.1, 0.05, 1.0  # m below the ground, share of all level floor, and m^2, from which on it is told of
 MOST_SLOPE = np.radians(1.0)  # of a level surface
 SAME_LEVEL = 0.005  # m, between surfaces of one level
 SUNK = 0.002  # m, by which a building's own floor lies below the ground: the engine feels the edges between its triangles
@@ -35,12 +37,19 @@ BARE = WorldFile(about="", origin=Origin(0.0, 0.0), floor=(-10.0, -10.0, 10.0, 1
 
 
 class _Storey(NamedTuple):
-    """A wide level surface of a thing. height [m]; extent: x_min, y_min, x_max, y_max [m]; is_slab: the thing is nothing else."""
+    """A wide level surface of things. height [m]; extents: x_min, y_min, x_max, y_max [m] of each; is_slab: they are nothing else."""
 
-    thing: Thing
+    things: tuple[Thing, ...]
     height: float
-    extent: tuple[float, float, float, float]
+    extents: tuple[tuple[float, float, float, float], ...]
     is_slab: bool
+
+
+class _Level(NamedTuple):
+    """A level surface of a thing that looks up: height [m], area [m^2]."""
+
+    height: float
+    area: float
 
 
 class SdfGround:
@@ -50,8 +59,11 @@ class SdfGround:
         self._folder = folder
         self._notes = notes
 
-    def levelled(self, world: WorldFile, things: Sequence[Thing], planes: Planes) -> WorldFile:
-        """``world`` with the things, moved so that the ground that one drives on is z = 0. planes: height [m] and colour of level ones."""
+    def levelled(self, world: WorldFile, things: Sequence[Thing], planes: Planes, names_ground: bool) -> WorldFile:
+        """``world`` with the things, moved so that the ground that one drives on is z = 0. planes: height [m] and colour of level ones.
+
+        names_ground: the file includes Gazebo's own ground plane.
+        """
         kept = [t for t in things if np.abs(_place(t)).max() < FARTHEST]
         if len(kept) < len(things):
             self._notes.add(f"things farther than {FARTHEST:g} m from the origin are left out", f"{len(things) - len(kept)}")
@@ -60,17 +72,21 @@ class SdfGround:
         fields = []
         if storey is not None and (not planes or storey.height >= height - LEVEL):
             height = storey.height
-            kept.remove(storey.thing)
+            names = ", ".join(thing.name for thing in storey.things)
+            kept = [thing for thing in kept if thing not in storey.things]
             if storey.is_slab:
-                fields = [Field(storey.extent, storey.thing.colour)]
-                self._notes.add("a slab under everything is the ground, z = 0", storey.thing.name)
+                fields = [Field(extent, thing.colour) for extent, thing in zip(storey.extents, storey.things, strict=True)]
+                self._notes.add("a slab under everything is the ground, z = 0", names)
             else:
-                kept.append(_moved(storey.thing, -SUNK))
+                kept += [_moved(thing, -SUNK) for thing in storey.things]
                 note = f"its floor is the ground, z = 0; it stands {1e3 * SUNK:g} mm lower, so that wheels run on the plane"
-                self._notes.add(note, storey.thing.name)
+                self._notes.add(note, names)
+        elif kept and not (planes or names_ground):
+            self._notes.add("no ground in the file: a plane at z = 0 is put in")
         if abs(height) > LEVEL:
             self._notes.add(f"the ground lies at {height:g} m; everything is moved by {-height:g} m so that it is z = 0")
             kept = [_moved(thing, -height) for thing in kept]
+        self._tell_sunk(kept)
         return msgspec.structs.replace(_with(world, kept), floor=floor, fields=fields, ground_colour=colour or PALE)
 
     def on_terrain(self, world: WorldFile, things: Sequence[Thing], terrain: Terrain, lowest: float) -> WorldFile:
@@ -80,26 +96,42 @@ class SdfGround:
         moved = _with(world, [_moved(thing, -lowest) for thing in things])
         return msgspec.structs.replace(moved, terrain=terrain, floor=terrain_floor(terrain, self._notes))
 
+    def _tell_sunk(self, things: Sequence[Thing]) -> None:
+        """Floors below the ground, which is a plane, are nobody's to drive on."""
+        levels = [level for thing in things for level in self._levels(thing)]
+        low = [level for level in levels if level.height < -DEEP]
+        sunk, whole = (sum(level.area for level in some) for some in (low, levels))
+        if sunk > SUNK_SHARE * whole and sunk > SUNK_AREA:
+            lowest = min(level.height for level in low)
+            self._notes.add(f"level floor below the ground z = 0, where nothing drives: {sunk:.3g} m^2, down to {lowest:.3g} m")
+
     def _storey(self, things: Sequence[Thing]) -> _Storey | None:
         """The wide level surface that carries most of the others; of several the one nearest to z = 0, where Gazebo lets robots begin."""
         spans = [self._span(thing) for thing in things]
         x_min, y_min, x_max, y_max = self._floor(things)
         least = SLAB_SHARE * (x_max - x_min - 2 * MARGIN) * (y_max - y_min - 2 * MARGIN)
-        found = []
+        found, tiles = [], []
         for thing, (low, high) in zip(things, spans, strict=True):
             if min(high[:2] - low[:2]) < SHORTEST_SLAB:
                 continue
             x_low, y_low, x_high, y_high = (round(float(v), 3) for v in (*low[:2], *high[:2]))
-            for height in self._levels(thing, least):
-                above = sum(span[0][2] + span[1][2] > 2 * height for other, span in zip(things, spans, strict=True) if other is not thing)
+            extent = x_low, y_low, x_high, y_high
+            for height, area in self._levels(thing):
                 is_slab = high[2] <= height + LEVEL and low[2] >= height - THICKEST_SLAB
+                tiles += [(thing, height, area, extent)] if is_slab else []
                 has_walls = high[2] > height + LEVEL
-                if above >= SLAB_SHARE * (len(things) - 1) and (has_walls or (is_slab and len(things) > 1)):
-                    found.append(_Storey(thing, round(height, 4), (x_low, y_low, x_high, y_high), is_slab))
+                carries = _above(spans, height) - bool(low[2] + high[2] > 2 * height) >= SLAB_SHARE * (len(things) - 1)
+                if area >= least and carries and (has_walls or (is_slab and len(things) > 1)):
+                    found.append(_Storey((thing,), round(height, 4), (extent,), is_slab))
+        for _, height, _, _ in tiles:
+            laid = [tile for tile in tiles if abs(tile[1] - height) < SAME_LEVEL]
+            extents = tuple(tile[3] for tile in laid)
+            if len(things) > len(laid) > 1 and _over(spans, height, extents) >= OVER_TILES * (len(things) - len(laid)):
+                found.append(_Storey(tuple(tile[0] for tile in laid), round(height, 4), extents, True))
         return min(found, key=lambda storey: (abs(storey.height), -storey.height), default=None)
 
-    def _levels(self, thing: Thing, least: float) -> list[float]:
-        """Heights [m] at which a thing has level surface that looks up, ``least`` [m^2] of it together."""
+    def _levels(self, thing: Thing) -> list[_Level]:
+        """The level surfaces of a thing that look up."""
         if not isinstance(thing, Box | Mesh):
             return []
         vertices, faces = triangles(*self._solids((thing,)))
@@ -109,7 +141,7 @@ class SdfGround:
         heights, areas = corners[is_level, :, 2].mean(axis=1), doubled[is_level, 2] / 2
         order = np.argsort(heights)
         groups = np.split(order, np.flatnonzero(np.diff(heights[order]) > SAME_LEVEL) + 1)
-        return [float(np.average(heights[g], weights=areas[g])) for g in groups if areas[g].sum() >= least]
+        return [_Level(float(np.average(heights[g], weights=areas[g])), float(areas[g].sum())) for g in groups if len(g)]
 
     def _solids(self, things: Sequence[Thing]) -> list[Solid]:
         return solids(_with(BARE, things), self._folder)
@@ -131,6 +163,18 @@ class SdfGround:
             self._notes.add(f"the drivable floor is cut to {WIDEST:g} m a side")
         x_min, y_min, x_max, y_max = (round(float(v), 2) for v in (*low, *high))
         return x_min, y_min, x_max, y_max
+
+
+def _above(spans: Sequence[tuple[Floats, Floats]], height: float) -> int:
+    """How many of the things, by their spans, have their middle above a height [m]."""
+    return sum(bool(low[2] + high[2] > 2 * height) for low, high in spans)
+
+
+def _over(spans: Sequence[tuple[Floats, Floats]], height: float, extents: Sequence[tuple[float, float, float, float]]) -> int:
+    """How many of the things have their middle above a height [m] and over one of the rectangles x_min, y_min, x_max, y_max [m]."""
+    x, y, z = np.mean(np.array(spans), axis=1).T
+    within = [(x >= x_low) & (x <= x_high) & (y >= y_low) & (y <= y_high) for x_low, y_low, x_high, y_high in extents]
+    return int(np.count_nonzero((z > height) & np.any(within, axis=0)))
 
 
 def _with(world: WorldFile, things: Sequence[Thing]) -> WorldFile:

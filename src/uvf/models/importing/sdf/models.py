@@ -17,7 +17,10 @@ from uvf.models.yaml_data import BadInput
 
 PATHS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH")
 FUEL = (".gz/fuel", ".ignition/fuel")
-NOT_NEEDED = {"sun": "lights are not simulated", "ground_plane": "the ground, z = 0, is always there"}
+GROUND = "ground_plane"
+NOT_NEEDED = {"sun": "lights are not simulated", GROUND: "the ground, z = 0, is always there"}
+LATE_DECLARATION = re.compile(rb"\A(\s+)<\?xml[^>]*\?>")
+"""One that is not at the very beginning, where XML wants it: Gazebo does not mind."""
 DEEPEST = 20  # models within models
 PARENTS_SEARCHED = 4
 
@@ -26,7 +29,8 @@ def read_sdf(path: Path) -> Any:
     """The root element of an SDF file. Raises BadInput."""
     refuse_pointer(path)
     try:
-        root = etree.fromstring(path.read_bytes(), etree.XMLParser(remove_comments=True, remove_pis=True, resolve_entities=False))
+        text = LATE_DECLARATION.sub(rb"\1", path.read_bytes())
+        root = etree.fromstring(text, etree.XMLParser(remove_comments=True, remove_pis=True, resolve_entities=False))
     except OSError as error:
         raise BadInput(f"{path}: cannot be read: {error.strerror}") from error
     except (etree.XMLSyntaxError, ValueError) as error:
@@ -47,6 +51,8 @@ class Models:
         gazebo = [Path.home() / ".gazebo/models", *sorted(Path("/usr/share").glob("gazebo*/models"))]
         self._roots = [root for folder in (*folders, *about, *named, *gazebo) for root in (folder, folder / "models", folder / "worlds")]
         self._notes = notes
+        self.names_ground = False
+        """Whether Gazebo's own ground plane is included."""
 
     def expand(self, element: Any, depth: int = 0) -> None:
         """Replaces every <include> below ``element`` by its model. Raises BadInput for a file that is found and cannot be read."""
@@ -66,6 +72,7 @@ class Models:
         uri = (include.findtext("uri") or "").strip()
         name = re.sub(r"[ -]", "_", _last(uri)).lower()
         if name in NOT_NEEDED:
+            self.names_ground = self.names_ground or name == GROUND
             self._notes.add(f"not needed, for {NOT_NEEDED[name]}", f"model {_last(uri)}")
             return None
         found = self._model_file(uri, include)

@@ -1,5 +1,6 @@
 """Poses and frames of SDF: what stands where in its model (http://sdformat.org/tutorials?tut=pose_frame_semantics)."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -25,10 +26,14 @@ def place_of(element: Any) -> str:
     return f"{owner.get(FILE) if owner is not None else 'SDF'}:{element.sourceline}"
 
 
+GLUED = re.compile(r"(?<=[\d.])(?=[-+])")
+"""Between two numbers without a space, which C++ streams, and so Gazebo, read as two."""
+
+
 def numbers(element: Any, count: int | None = None) -> Floats:
     """The numbers (n,) in an element, in its own units. Raises BadInput when there are not ``count`` finite ones."""
     try:
-        values = np.array([float(word) for word in (element.text or "").split()])
+        values = np.array([float(word) for word in GLUED.sub(" ", element.text or "").split()])
     except ValueError as error:
         raise BadInput(f"{place_of(element)}: <{element.tag}>: {error}; write numbers") from error
     if (count is not None and len(values) != count) or not np.isfinite(values).all():

@@ -81,14 +81,17 @@ class SdfImport:
             if model.get("name") not in gone
             for thing in self._model(self._placed(model, scope, ("", IDENTITY)))
         ]
-        if has_models and not things and not self._planes and self._heightmaps.terrain is None:
+        has_ground = bool(self._planes) or self._models.names_ground or self._heightmaps.terrain is not None
+        if has_models and not things and not has_ground:
             raise BadInput(f"{self._path}: nothing in it can be taken over{self._why()}")
+        if not things and self._heightmaps.terrain is None:
+            self.notes.add("nothing stands in this world; what a launch file spawns is not in it: wrap that in a world of its own")
         first = element.find("model")
         about = f"Imported from {self._path.name}: {element.get('name') or ('' if first is None else first.get('name'))}."
         ground, settings = SdfGround(self._folder, self.notes), self._settings(element, about)
         if self._heightmaps.terrain is not None:
             return ground.on_terrain(settings, things, self._heightmaps.terrain, self._heightmaps.lowest)
-        return ground.levelled(settings, things, self._planes)
+        return ground.levelled(settings, things, self._planes, self._models.names_ground)
 
     def _why(self) -> str:
         said = self.notes.lines()
