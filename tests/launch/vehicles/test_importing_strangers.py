@@ -10,6 +10,7 @@ from tests.launch.vehicles.foreign_robots import import_one
 from tests.launch.vehicles.test_importing_drives import BOTH, BOX, HULL, hung, taken, turning, wheel_shape
 from tests.launch.vehicles.test_importing_sensors import ray
 from uvf.models.vehicle.file import load_vehicle
+from uvf.models.yaml_data import BadInput
 
 SIDES = (("left", 0.16), ("right", -0.16))
 MECANUM = """
@@ -202,3 +203,15 @@ def test_the_mass_of_a_body_counts_against_all_that_is_fast_to_it(tmp_path):
     (tmp_path / "x.urdf").write_text(f'<robot name="it">{heavy}{"".join(parts)}</robot>')
     import_vehicle(tmp_path / "x.urdf", tmp_path / "it")
     assert faults(tmp_path / "it") == []
+
+
+def test_a_package_of_another_version_is_told_from_one_that_is_not_there(tmp_path):
+    package, space = tmp_path / "parts", 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    package.mkdir()
+    (package / "package.xml").write_text("<package><name>parts</name></package>")
+    source = tmp_path / "it.urdf.xacro"
+    include = '<xacro:include filename="$(find {})/wheels.xacro"/><xacro:wheels/>'
+    for name, remedy in (("parts", "packages that are there have no such file"), ("none", "put their packages in a folder about it")):
+        source.write_text(f'<robot name="it" {space}>{HULL}{include.format(name)}</robot>')
+        with pytest.raises(BadInput, match=remedy):
+            import_vehicle(source, tmp_path / "it")

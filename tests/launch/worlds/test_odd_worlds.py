@@ -49,6 +49,8 @@ REFUSED = {
         "latitude of 200": (at(200), "200, 0 deg is no place on Earth"),
         "latitude of words": (at("north"), "<latitude_deg>: could not convert string to float: 'north'"),
     },
+    "office.building.yaml": {"of RMF": ("coordinate_system: reference_image\nlevels: {}\n", "drawn for Open-RMF is no map")},
+    "geometry.urdf.xacro": {"a building as a robot": ("<robot/>", "of a building make an SDF of it first: gz sdf -p")},
     "map.yaml": {
         "empty": ("", "the file is empty"),
         "tabs": ("image:\tok.pgm\n\tresolution: 0.05\n", "not valid YAML"),

@@ -18,6 +18,7 @@ from uvf.models.yaml_data import BadInput
 SDF = (".world", ".sdf")
 PICTURES = (".pgm", ".png")
 MAPS = (".yaml", ".yml", *PICTURES)
+BUILDING, ROBOTS = ".building.yaml", (".urdf", ".xacro")
 
 
 class Options(NamedTuple):
@@ -78,6 +79,10 @@ def _read(file: Path, folder: Path, options: Options) -> tuple[WorldFile, list[s
     if file.suffix in PICTURES and not any(file.with_suffix(ending).is_file() for ending in (".yaml", ".yml")):
         heights = "one of heights is taken with --terrain EAST NORTH HEIGHT, in metres"
         raise BadInput(f"{file}: a picture of a map has {file.stem}.yaml beside it, which says its resolution and origin; {heights}")
+    if file.name.endswith(BUILDING):
+        raise BadInput(f"{file}: a building as drawn for Open-RMF is no map; give the SDF world that rmf_building_map_tools make of it")
+    if file.suffix in ROBOTS:
+        raise BadInput(f"{file}: a URDF is a vehicle ('uvf vehicle import'); of a building make an SDF of it first: gz sdf -p FILE.urdf")
     if file.suffix in MAPS:
         notes = Notes()
         return map_world(file, options.height, notes), notes.lines()

@@ -110,5 +110,10 @@ def _refusal(copies: Copies, reason: object, remedy: str) -> BadInput:
     if copies.missed:
         macro = str(reason).rpartition(":")[2].strip()
         files = [file for file in copies.missed if macro and macro in file] or copies.missed
-        remedy = f"it includes files that are not there, so put their packages in a folder about it: {', '.join(files)}"
+        here, nowhere = ([file for file in files if file.startswith("/") is known] for known in (True, False))
+        remedies = (
+            [f"it includes files that are not there, so put their packages in a folder about it: {', '.join(nowhere)}"] if nowhere else []
+        )
+        remedies += [f"packages that are there have no such file, so get the version that has it: {', '.join(here)}"] if here else []
+        remedy = "; ".join(remedies)
     return BadInput(f"{copies.path}: xacro cannot expand it: {one_line(copies.original_names(str(reason)))}; {remedy}")
