@@ -3,7 +3,24 @@
 import numpy as np
 import pytest
 
-from tests.planning.local.grounds import BODY, DT, LIMITS, disc_gap, drive, gap, ground, path_to, situation
+from tests.planning.local.grounds import (
+    BODY,
+    DT,
+    INFLATION,
+    LIMITS,
+    ORIGIN,
+    RESOLUTION,
+    SIDE,
+    START,
+    disc_gap,
+    drive,
+    gap,
+    ground,
+    moved,
+    path_to,
+    situation,
+)
+from uvf.planning.costmap.costmap import make_costmap
 from uvf.planning.local.mppi import Mppi, MppiSettings
 from uvf.planning.local.planner import Limits, State
 
@@ -76,3 +93,25 @@ def test_limits_of_the_moment_count():
     for _ in range(10):
         usual, more = planner.command(now), faster.command(free)
     assert usual[0] <= LIMITS.max_speed and more[0] > 1.6
+
+
+def test_it_keeps_off_ground_that_nothing_has_seen_where_there_is_other():
+    """The path leads along the edge of what is known; whatever stands beside it nobody knows."""
+
+    def half_known(first):
+        cells = np.zeros((SIDE, SIDE), dtype=np.int8)
+        cells[round((first - ORIGIN[1]) / RESOLUTION) :] = -1
+        return make_costmap(cells, (RESOLUTION, ORIGIN), BODY, INFLATION)
+
+    def over_unseen(first):
+        path, state, worst = np.column_stack((np.linspace(-3.0, 3.0, 61), np.zeros(61))), START, []
+        planner, costs = mppi(), half_known(first)
+        for _ in range(100):
+            state = moved(state, planner.command(situation(costs, state, path)) or (0.0, 0.0))
+            worst.append(state.y + 0.2 * np.cos(state.yaw) + 0.25 * abs(np.sin(state.yaw)) - first)
+        return np.mean(np.array(worst[20:]) > 0.05), state.x
+
+    share, reached = over_unseen(0.1)
+    assert share < 0.3
+    assert reached > 2.0
+    assert over_unseen(-1.0)[1] > 1.0  # where all is unknown it drives on

@@ -35,7 +35,7 @@ class Grids(NamedTuple):
     blocked: Bits
     """Bit ``heading_bin(yaw)`` set: the footprint touches an obstacle."""
     close: Bits
-    """The same for the footprint with the soft margin round it."""
+    """The same for the footprint with the soft margin round it, and on ground that has not been seen: what stands there is not known."""
     to_go: Floats32
     """m to the goal, longer where it is dear."""
     off_path: Floats32
