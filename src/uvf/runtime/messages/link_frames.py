@@ -1,6 +1,6 @@
 """The links of a URDF as frames: where they sit on the vehicle, and how its joints turn them.
 
-REP-105 wants ``base_footprint`` on the floor and level, REP-103 axes; the file's own root hangs below it.
+REP-105 wants ``base_footprint`` on the floor, REP-103 axes; the file's own root hangs below it.
 """
 
 from collections.abc import Iterator, Sequence
