@@ -46,6 +46,8 @@ def test_no_panel_has_a_serious_fault(browser, quiet, theme):
 
 def test_a_newcomer_without_a_mouse_reaches_stop_vehicles_commands_and_tabs(browser, quiet):
     with closing(shown(browser, quiet, "light", (1200, 800))) as page:
+        for name in ("Hold", "Disarm burger"):  # they are offered once the vehicle has spoken
+            page.get_by_role("button", name=name, exact=True).wait_for()
         reached = []
         for _ in range(40):
             page.keyboard.press("Tab")

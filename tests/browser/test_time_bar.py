@@ -51,7 +51,7 @@ def test_a_kept_minute_opens_from_a_file_and_moves(browser, tmp_path):
     page.wait_for_function(FAR, arg=[MILVUS, [0, 0, 0], 1], timeout=90_000)
     page.wait_for_function(FAR, arg=[MILVUS, page.evaluate(WHERE, MILVUS), 20], timeout=60_000)
     page.wait_for_function("() => document.querySelectorAll('#gcs .g-card').length == 2")
-    assert "MISSION" in page.locator("#gcs .g-card[data-name=milvus]").text_content()
+    page.wait_for_function("() => document.querySelector('#gcs .g-card[data-name=milvus]').textContent.includes('MISSION')")
     assert errors == []
     assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
     page.close()
