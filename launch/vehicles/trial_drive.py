@@ -37,6 +37,11 @@ class Driven(NamedTuple):
     bearing: tuple[str, ...]
 
     @property
+    def turned_share(self) -> float:
+        """How far it has turned of what its wheels say."""
+        return float(self.pose[2] / self.expected[2])
+
+    @property
     def remedy(self) -> str:
         """Where to look for what keeps it from its way."""
         borne = (
@@ -84,8 +89,7 @@ def _rolled(pose: Floats, command: Twist) -> Floats:
 
 def turned_share(folder: Path, body: GroundBody) -> float:
     """How far it turns of what its wheels say: on the spot, or of a car on an arc."""
-    driven = _turned(folder, body)
-    return float(driven.pose[2] / driven.expected[2])
+    return _turned(folder, body).turned_share
 
 
 def _turned(folder: Path, body: GroundBody) -> Driven:
@@ -108,7 +112,7 @@ def trial_faults(folder: Path, body: GroundBody) -> Iterator[str]:
         )
         return
     turned = _turned(folder, body)
-    share = float(turned.pose[2] / turned.expected[2])
+    share = turned.turned_share
     if abs(share - 1.0) <= OFF:
         return
     if isinstance(body.drive, SkidSteerFile) and share > 0.1:

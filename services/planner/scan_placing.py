@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import LaserScan
-from uvf.maths import se3
-from uvf.maths.rotations import level_from
+from uvf.maths import rotations, se3
 from uvf.maths.se2 import Pose2, PoseHistory, compose, inverse, transform
 from uvf.maths.se3 import Transform, from_above
 from uvf.runtime.messages.convert import scan_rays, seconds
@@ -53,7 +52,7 @@ class ScanPlacer:
     def __init__(self, lidars: Mapping[str, PlacedLidar], farthest: float) -> None:
         """lidars: by the frames that their scans name, the first one first; farthest: m, at which beams without return end."""
         self._lidars, self.farthest = lidars, farthest
-        self._history, self._level_from_base = PoseHistory(HISTORY), se3.IDENTITY
+        self._history, self._orientation = PoseHistory(HISTORY), rotations.IDENTITY
         self._placed_at = dict.fromkeys(lidars, -np.inf)
         self._waiting: dict[str, LaserScan] = {}
 
@@ -70,7 +69,7 @@ class ScanPlacer:
     def move(self, t: float, pose: Pose2, orientation: Floats) -> None:
         """The vehicle was at ``pose`` at ``t`` [s]; orientation: wxyz (4,), of which the tilt counts."""
         self._history.add(t, pose)
-        self._level_from_base = Transform(level_from(orientation), np.zeros(3))
+        self._orientation = orientation
 
     def at(self, t: float) -> Pose2 | None:
         """Where the vehicle was at ``t`` [s]; None when that is too long ago, or not known yet."""
@@ -110,7 +109,8 @@ class ScanPlacer:
         ranges = np.where((ranges > 0.0) & (ranges < MOST), ranges, 0.0)
         ends = np.where(ranges > 0.0, ranges, self.farthest)[:, None] * rays
         base_from_frame, points = inverse(pose), np.empty_like(ends)
-        level_from_lidar = se3.compose(self._level_from_base, lidar.base_from_lidar)
+        level_from_base = Transform(rotations.level_from(self._orientation), np.zeros(3))
+        level_from_lidar = se3.compose(level_from_base, lidar.base_from_lidar)
         for at, beams in lidar.sweeping.parts(len(ranges), seconds(scan.timestamp)):
             if (frame_from_base := self._history.at(at)) is None:
                 return None

@@ -3,7 +3,7 @@
 from math import inf, isfinite
 
 from schemas import topics
-from schemas.messages import EstimateQuality, Event, FrameTransform, Gnss, Imu, MapFix, NavState, Odometry, PoseInFrame, WheelTicks
+from schemas.messages import EstimateQuality, Event, FrameTransform, Gnss, Imu, MapFix, NavState, Odometry, Pose, PoseInFrame, WheelTicks
 from services.slam.odometry import messages
 from services.slam.odometry.readings import Readings, satellite_fix
 from uvf.estimation.odometry.calibration import Scales, SegmentMaker, WheelCalibration
@@ -217,11 +217,12 @@ class OdometryService(Service):
             pose = self._satellites.shown(drive.pose, odom_from_base, self.params.correction_speed / self.hz)
             sigma, known, ratio = self._satellites.sigma, self._satellites.is_known(t), self._satellites.ratio
         stance = messages.Stance(self._readings.height, *self._readings.tilt)
-        in_odom = stance.pose(odom_from_base)
+        in_odom, state = stance.pose(odom_from_base), messages.nav_state(t, pose, stance, drive.velocity, sigma)
+        in_world = Pose(position=state.position, orientation=state.orientation)
         return self.Outputs(
             odometry=messages.odometry(t, self._vehicle, in_odom, drive, left_over),
             moving=messages.moving(t, self._vehicle, in_odom),
-            pose=PoseInFrame(timestamp=stamp(t), frame_id="world", pose=stance.pose(pose)),
-            nav_state=messages.nav_state(t, pose, stance, drive.velocity, sigma),
+            pose=PoseInFrame(timestamp=stamp(t), frame_id="world", pose=in_world),
+            nav_state=state,
             quality=messages.quality(t, sigma, drive, (known, ratio)) if self._quality_due.at(t) else None,
         )

@@ -18,6 +18,7 @@ from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.inertia import whole
 from uvf.models.urdf.robot import Joint, UrdfModel
+from uvf.models.urdf.rules import LIGHTEST_WHEEL
 from uvf.models.vehicle.drive import AckermannFile, MecanumFile, OmniFile, OneAxle, SkidSteerFile
 from uvf.models.vehicle.file import GroundBody, VehicleFile
 from uvf.models.yaml_data import BadInput, FileLocation
@@ -28,7 +29,6 @@ TOUCH = 0.003  # m: what is no higher touches the floor when the wheels have sun
 SINK = 0.003  # m below the floor at the start, which physics pushes out gently
 LEVEL = 1e-4  # m
 SAME = 0.03  # share by which wheel radius and track may be off
-LIGHT = 5e-4  # share of the whole mass that a wheel weighs at least: lighter ones slip and hop in any solver
 OFF_CENTRE = 0.005  # m, axle's middle from base_link
 ALONG = np.cos(np.radians(5.0))
 LOW_MARGIN = 0.1  # of the track, from the centre of mass to the edge of the supports
@@ -149,7 +149,7 @@ def _wheel_faults(body: CheckedBody, wheel: CheckedWheel, ground: FileLocation) 
     forward = np.array((forward, -forward))
     radius = max(float(reach(solid, forward).sum()) for solid in solids) / 2
     told = [inertial.mass for name in body.model.below(joint.child) if (inertial := body.model.links[name].inertial) is not None]
-    if told and body.mass is not None and sum(told) < LIGHT * body.mass.mass:
+    if told and body.mass is not None and sum(told) < LIGHTEST_WHEEL * body.mass.mass:
         weighs = f"weighs {1000 * sum(told):.3g} g, the vehicle {body.mass.mass:.3g} kg"
         yield f"{where}: {what} {weighs}: so light a wheel slips and hops; give its link a wheel's mass and inertia"
     if abs(radius - drive.wheel_radius) > SAME * drive.wheel_radius:

@@ -85,7 +85,7 @@ def sensor_notes(model: UrdfModel, sensors: Sensors, poses: Poses, turning: set[
             yield f"{100 * share:.0f} % of the {which}'s beams meet the vehicle's own body"
     outline = plan_outline(model)
     if seen_from and outline is not None:
-        for first, last in blind_sides(outline[np.argsort(np.arctan2(outline[:, 1], outline[:, 0]))], seen_from):
+        for first, last in blind_sides(outline, seen_from):
             side = f"from {_signed(first):.0f} to {_signed(last):.0f} deg, counter-clockwise from ahead"
             yield f"no lidar sees what stands {BESIDE:g} m beside it {side}: only what was seen there before is known of"
 

@@ -28,15 +28,21 @@ def size_faults(model: UrdfModel, poses: Mapping[str, Transform]) -> Iterator[st
 
 def _heavy(model: UrdfModel, link: Link, poses: Mapping[str, Transform]) -> Iterator[str]:
     """Where what is fast to a link tells no mass, its own is that of all of them."""
-    fast = [name for name in model.rigid_with(link.name) if name in poses]
-    tells = [name for name in fast if model.links[name].inertial is not None]
-    extents = _box(model, fast, poses) if tells == [link.name] else _extents(link, IDENTITY)
-    if link.inertial is None or extents is None:
+    extents = _extents(link, IDENTITY)
+    if link.inertial is None or extents is None or not _is_too_heavy(link.inertial.mass, extents):
         return
-    volume, mass = float(np.prod(extents[0] - extents[1])), link.inertial.mass
-    if volume > SMALLEST and mass > HEAVIEST * volume:
-        what = f"link '{link.name}' weighs {mass:.4g} kg in a box of {1000 * volume:.3g} l, more than gold would; give kilograms"
+    fast = [name for name in model.rigid_with(link.name) if name in poses]
+    body = _box(model, fast, poses) if all(model.links[name].inertial is None for name in fast if name != link.name) else None
+    if body is None or _is_too_heavy(link.inertial.mass, body):
+        box = f"in a box of {1000 * float(np.prod(extents[0] - extents[1])):.3g} l"
+        what = f"link '{link.name}' weighs {link.inertial.mass:.4g} kg {box}, more than gold would; give kilograms"
         yield str(ModelFault(model.path, link.line, what))
+
+
+def _is_too_heavy(mass: float, extents: tuple[NDArray[np.float64], NDArray[np.float64]]) -> bool:
+    """Whether a mass [kg] is more than that of the heaviest in a box, by its highest and lowest corner (3,) [m]; not of a sheet."""
+    volume = float(np.prod(extents[0] - extents[1]))
+    return volume > SMALLEST and mass > HEAVIEST * volume
 
 
 def _box(model: UrdfModel, names: Iterable[str], poses: Mapping[str, Transform]) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from uvf.models.importing.robot import ImportedDrive, StatedLimits, stated
+from uvf.models.urdf.packages import enclosing_package
 from uvf.models.yaml_data import BadInput, read_yaml
 
 PACKAGE = "package.xml"
@@ -61,7 +62,7 @@ def with_controllers(drive: ImportedDrive, stated_there: ImportedDrive) -> Impor
 
 def _files(description: Path) -> Iterator[Path]:
     """YAML files for parameters, of the description's package first, then of those beside it."""
-    package = next((folder for folder in description.resolve().parents if (folder / PACKAGE).is_file()), None)
+    package = enclosing_package(description.resolve())
     if package is None:
         return
     beside = sorted(folder.parent for folder in package.parent.glob(f"*/{PACKAGE}") if folder.parent != package)

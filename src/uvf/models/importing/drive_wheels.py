@@ -96,7 +96,7 @@ def find_wheels(foreign: Foreign) -> DriveWheels:
     pairs = [(a, b) for a, b in combinations(wheels, 2) if _opposite(a, b)]
     if virtual := [wheel.joint for wheel in wheels if any(_in_the_middle(wheel, pair) for pair in pairs)]:
         foreign.notes.add("wheels in the middle of an axle, which stand for both at its ends, left out", ", ".join(j.name for j in virtual))
-        foreign.model = without(model, virtual)
+        foreign.model = _without(model, virtual)
         return find_wheels(foreign)
     only_steered = all(steering_of(model, wheel) is not None for pair in pairs for wheel in pair)
     if only_steered and (loosened := loosened_wheels(foreign)):
@@ -126,13 +126,13 @@ def find_wheels(foreign: Foreign) -> DriveWheels:
 
 
 def _in_the_middle(wheel: WheelGuess, pair: Pair) -> bool:
-    """Whether a wheel stands halfway between two like it, and nothing hangs on it."""
+    """Whether a wheel stands halfway between two like it."""
     a, b = pair
     apart = float(np.linalg.norm(wheel.centre - (a.centre + b.centre) / 2))
     return apart < MIDDLE * wheel.radius and abs(wheel.radius - a.radius) <= ALIKE * a.radius and wheel.joint not in (a.joint, b.joint)
 
 
-def without(model: UrdfModel, joints: Iterable[Joint]) -> UrdfModel:
+def _without(model: UrdfModel, joints: Iterable[Joint]) -> UrdfModel:
     """The model without these joints and all that hangs on them."""
     gone = {name for joint in joints for name in model.below(joint.child)}
     kept = {name: joint for name, joint in model.joints.items() if joint.child not in gone}

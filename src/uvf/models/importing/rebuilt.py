@@ -16,14 +16,13 @@ from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.inertia import joined, moved
 from uvf.models.urdf.robot import Inertial, Joint, Link, UrdfModel
-from uvf.models.urdf.rules import RESERVED, inertial_faults
+from uvf.models.urdf.rules import LIGHTEST_WHEEL, RESERVED, inertial_faults
 
 Floats = NDArray[np.float64]
 
 BASE = "base_link"
 DOWN = np.array(((0.0, 0.0, -1.0),))
 Y, Z = np.array((0.0, 1.0, 0.0)), np.array((0.0, 0.0, 1.0))
-LEAST_WHEEL = 5e-4  # of the body's mass: a wheel that is lighter in its file has been left without one
 LIGHT = 0.01  # kg, of a steering that weighs nothing in the file
 SLIDE = "wheels that neither drive nor swivel became balls that slide"
 LOW = 0.004  # m above the floor, within which a shape is meant to touch it
@@ -87,7 +86,7 @@ def _weighed(parts: _Parts, foreign: Foreign) -> dict[str, Link]:
     shapes = {kind: tuple(placed(s, body[n]) for n in body for s in getattr(parts.links[n], kind)) for kind in ("visuals", "collisions")}
     whole = mended(Link(BASE, joined(given), shapes["visuals"], shapes["collisions"]), True, foreign.notes)
     assert whole.inertial is not None
-    least, found = LEAST_WHEEL * whole.inertial.mass, dict(parts.links)
+    least, found = LIGHTEST_WHEEL * whole.inertial.mass, dict(parts.links)
     for name, link in parts.links.items():
         if name in body:
             found[name] = replace(link, inertial=whole.inertial if name == BASE else None)

@@ -111,9 +111,7 @@ def _kind(sensor: ForeignSensor) -> tuple[str, Callable[[ForeignSensor, Foreign]
         return "sonar", _sonar
     if kind in LIDARS and sensor.element is not None and sensor.element.find(".//horizontal") is not None:
         beams, fan = _fan(sensor)
-        if beams <= 1:
-            return "range", _range_finder
-        if fan < BEAM and _number(sensor, "range/max", FAR) < NEAR:
+        if beams <= 1 or (fan < BEAM and _number(sensor, "range/max", FAR) < NEAR):
             return "range", _range_finder
         if fan < NARROW and beams < FEW:
             return "sonar", _sonar

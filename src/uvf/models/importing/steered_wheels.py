@@ -44,7 +44,7 @@ def steering_of(model: UrdfModel, wheel: WheelGuess) -> Joint | None:
 
 def with_rolling_wheels(model: UrdfModel) -> UrdfModel:
     """The model with a rolling joint for each wheel that hangs on its steering without one, as in files made to be looked at."""
-    found = [(joint, link) for joint in model.joints.values() if (link := _steered_alone(model, joint)) is not None]
+    found = [(joint, axis) for joint in model.joints.values() if (axis := _steered_alone(model, joint)) is not None]
     links, joints = dict(model.links), dict(model.joints)
     for joint, axis in found:
         wheel, below = f"{joint.child}_rolling", model.links[joint.child]
@@ -58,8 +58,8 @@ def with_rolling_wheels(model: UrdfModel) -> UrdfModel:
 
 def _steered_alone(model: UrdfModel, joint: Joint) -> Floats | None:
     """The axis (3,) in its link about which a wheel would roll that only a steering turns; None for what is none."""
-    poses, called = model.link_poses(), f"{joint.name} {joint.child}".lower()
-    if joint.kind not in ("revolute", "continuous") or joint.child not in poses or not WHEEL.search(called):
+    called = f"{joint.name} {joint.child}".lower()
+    if joint.kind not in ("revolute", "continuous") or not WHEEL.search(called) or joint.child not in (poses := model.link_poses()):
         return None
     axis = rotate(poses[joint.child].rotation, joint.axis)
     narrow = joint.kind == "revolute" and joint.limits is not None and 0.0 < joint.limits[1] - joint.limits[0] < np.pi

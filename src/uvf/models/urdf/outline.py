@@ -19,7 +19,7 @@ LEAST = 0.01  # m from base_link to each side
 
 
 def plan_outline(model: UrdfModel) -> Floats | None:
-    """(n, 2) [m, base_link] convex outline that holds all collision shapes as seen from above; None where there are none.
+    """(n, 2) [m, base_link] convex outline that holds all collision shapes as seen from above, anticlockwise; None where there are none.
 
     base_link lies inside of it, at least a centimetre from each side. Raises BadInput for a mesh that cannot be read.
     """
@@ -30,7 +30,7 @@ def plan_outline(model: UrdfModel) -> Floats | None:
     normals = np.column_stack((np.cos(angles), np.sin(angles), np.zeros(SIDES)))
     distances = np.maximum(np.max([reach(solid, normals) for solid in solids], axis=0), LEAST)
     corners: Floats = HalfspaceIntersection(np.column_stack((normals[:, :2], -distances)), np.zeros(2)).intersections
-    return corners
+    return corners[np.argsort(np.arctan2(corners[:, 1], corners[:, 0]))]
 
 
 def ground_outline(urdf: Path, radius: float) -> Floats:
@@ -40,7 +40,7 @@ def ground_outline(urdf: Path, radius: float) -> Floats:
     """
     outline = plan_outline(load_urdf(urdf))
     if outline is not None:
-        return outline[np.argsort(np.arctan2(outline[:, 1], outline[:, 0]))]
+        return outline
     angles = np.arange(SIDES) * (2.0 * np.pi / SIDES)
     circle: Floats = radius / np.cos(np.pi / SIDES) * np.column_stack((np.cos(angles), np.sin(angles)))
     return circle

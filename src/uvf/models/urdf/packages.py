@@ -34,12 +34,17 @@ def _in_workspace(folder: Path, package: str) -> Path | None:
     return None
 
 
+def enclosing_package(path: Path) -> Path | None:
+    """The folder of the ROS package in which a file lies: the nearest parent with a package.xml."""
+    return next((folder for folder in path.parents if (folder / "package.xml").is_file()), None)
+
+
 def installed(path: Path) -> Path | None:
     """The file that an installed package would have at a path where its sources have none: one folder deeper, or two.
 
     Packages of ros2_control's template keep under ``description`` what they install at the top.
     """
-    package = next((folder for folder in list(path.parents)[:PARENTS_SEARCHED] if (folder / "package.xml").is_file()), None)
+    package = enclosing_package(path)
     if package is None:
         return None
     rest = glob.escape(str(path.relative_to(package)))

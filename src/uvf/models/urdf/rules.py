@@ -11,6 +11,9 @@ TRIANGLE_SLACK = 1e-3
 """Of the largest principal moment: rounded figures of flat or thin bodies stay within it."""
 
 
+LIGHTEST_WHEEL = 5e-4
+"""Share of the vehicle's mass that a wheel weighs at least: lighter ones slip and hop in any solver."""
+
 RESERVED = ("base_footprint", "map", "odom")
 """Frames that every vehicle has besides the URDF's links (REP-105); a root called base_footprint is that frame."""
 

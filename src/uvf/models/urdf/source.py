@@ -110,7 +110,8 @@ def _refusal(copies: Copies, reason: object, remedy: str) -> BadInput:
     if copies.missed:
         macro = str(reason).rpartition(":")[2].strip()
         files = [file for file in copies.missed if macro and macro in file] or copies.missed
-        here, nowhere = ([file for file in files if file.startswith("/") is known] for known in (True, False))
+        here = [file for file in files if file.startswith("/")]
+        nowhere = [file for file in files if file not in here]
         remedies = (
             [f"it includes files that are not there, so put their packages in a folder about it: {', '.join(nowhere)}"] if nowhere else []
         )
