@@ -12,7 +12,7 @@ import typer
 
 from launch import settings
 from launch.commands.live.bus import node_app, topic_app
-from launch.commands.live.orders import arm, cancel, disarm, goal, mode
+from launch.commands.live.orders import arm, cancel, disarm, goal, joints, mode
 from launch.commands.live.param import param_app
 from launch.commands.live.running import NUMBERS
 from launch.commands.live.sim import sim_app
@@ -350,7 +350,7 @@ def test(context: typer.Context) -> None:
     raise typer.Exit(run_tests(context.args))
 
 
-for order in (arm, disarm, mode, cancel):
+for order in (arm, disarm, mode, cancel, joints):
     app.command()(order)
 app.command(context_settings=NUMBERS)(goal)
 

@@ -199,6 +199,7 @@ SURFACES = Topic(f"{_V}/cmd/<source>/surfaces", m.SurfaceCommand, 20, _Q.CONTROL
 SETPOINT = Topic(f"{_V}/cmd/<source>/setpoint", m.FlightSetpoint, 20, _Q.CONTROL, "what mode Offboard follows: attitude, course or path")
 GIMBAL = Topic(f"{_V}/cmd/<source>/gimbal", m.GimbalCommand, 0, _Q.LATCHED, "where the gimbal is to look, and relative to what")
 WHEEL_COMMAND = Topic(f"{_V}/actuator/wheels", m.WheelCommand, 50, _Q.CONTROL, "wheel speeds")
+JOINT_COMMAND = Topic(f"{_V}/actuator/joints", m.JointStates, 50, _Q.CONTROL, "positions of a ground vehicle's lift, pan, arm")
 SURFACE_COMMAND = Topic(f"{_V}/actuator/surfaces", m.SurfaceCommand, 50, _Q.CONTROL, "control surfaces and throttle")
 
 # state and mission
@@ -242,6 +243,7 @@ MAPPING = Request(f"{_V}/srv/map/mapping", m.MappingRequest, m.Reply, "let the m
 ROUTE = Request(f"{_V}/srv/route", m.RouteRequest, m.Reply, "go to several places: stop at each, pass through, or patrol")
 FOLLOW = Request(f"{_V}/srv/follow", m.FollowRequest, m.Reply, "stay behind another vehicle")
 PREVIEW = Request(f"{_V}/srv/preview", m.PreviewRequest, m.PreviewReply, "is there a way to a place, and what is it like?")
+MOVE_JOINTS = Request(f"{_V}/srv/joints", m.MoveJointsRequest, m.Reply, "move joints of a ground vehicle: lift, pan, arm")
 CANCEL = Request(f"{_V}/srv/cancel", m.CancelRequest, m.Reply, "give up the goal that is being driven to")
 SET_MISSION = Request(f"{_V}/srv/mission", m.MissionRequest, m.Reply, "replace the mission")
 SET_FENCE = Request(f"{_V}/srv/fence", m.FenceRequest, m.Reply, "replace the fence, or take it away")

@@ -159,6 +159,7 @@ def import_(
     into: IntoOption = None,
     arg: Annotated[list[str] | None, typer.Option(help="Of the xacro, as name:=value.")] = None,
     env: Annotated[list[str] | None, typer.Option(help="Variable of the environment for the xacro, as NAME=value.")] = None,
+    joint: Annotated[list[str] | None, typer.Option(help="To be moved on command, though no file says so: a lift, a pan, an arm.")] = None,
 ) -> None:
     """Import a third-party robot or aircraft: a folder in vehicles/, and a note of what was dropped or guessed. Checks it at once."""
     from launch.vehicles.checking import check_all
@@ -168,7 +169,7 @@ def import_(
     with bad_input_is_one_line():
         values = XacroValues(dict(_pair("--arg", text, ":=") for text in arg or []), dict(_pair("--env", text, "=") for text in env or []))
         target = into or _vehicles()
-        for line in import_vehicle(source, target / name, values):
+        for line in import_vehicle(source, target / name, values, joint or []):
             typer.echo(f"note: {line}")
         raise typer.Exit(1 if check_all([str(target / name)], target, None) else 0)
 

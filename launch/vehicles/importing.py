@@ -16,18 +16,18 @@ from launch.vehicles.importing_air import import_aircraft
 from launch.vehicles.trial_drive import turned_share
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.se3 import apply, compose
-from uvf.models.importing.controllers import drive_of_controllers, with_controllers
-from uvf.models.importing.drive_wheels import DriveWheels, find_wheels
+from uvf.models.importing.driving.controllers import drive_of_controllers, with_controllers
+from uvf.models.importing.driving.drive_wheels import DriveWheels, find_wheels
+from uvf.models.importing.driving.omni_wheels import heading_of
+from uvf.models.importing.driving.steered_wheels import middle_steering
+from uvf.models.importing.driving.wheel_guess import WheelGuess
 from uvf.models.importing.jsbsim import jsbsim_model
 from uvf.models.importing.meshes import with_own_meshes
-from uvf.models.importing.omni_wheels import heading_of
 from uvf.models.importing.rebuilt import rebuilt, wheel_names
 from uvf.models.importing.robot import Foreign, StatedLimits
 from uvf.models.importing.sdf.robot import read_foreign_sdf
 from uvf.models.importing.sensors import sensors_section
-from uvf.models.importing.steered_wheels import middle_steering
 from uvf.models.importing.urdf import read_foreign_urdf
-from uvf.models.importing.wheel_guess import WheelGuess
 from uvf.models.shapes.mesh import placed, reach
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.urdf.source import NO_VALUES, XacroValues
@@ -46,8 +46,11 @@ MARGIN = 3.0  # of a motor's speed without load over the largest that is asked f
 ROUND = np.column_stack([f(np.linspace(0, 2 * np.pi, 180, endpoint=False)) for f in (np.cos, np.sin, np.zeros_like)])
 
 
-def import_vehicle(source: Path, folder: Path, values: XacroValues = NO_VALUES) -> list[str]:
-    """Imports a third-party model into ``folder``; returns the notes, also written to its import.txt. Raises BadInput."""
+def import_vehicle(source: Path, folder: Path, values: XacroValues = NO_VALUES, joints: Sequence[str] = ()) -> list[str]:
+    """Imports a third-party model into ``folder``; returns the notes, also written to its import.txt. Raises BadInput.
+
+    joints: to be moved on command, beside those of which the files say so.
+    """
     check_new(folder)
     if (aircraft := jsbsim_model(source)) is not None:
         return import_aircraft(aircraft, folder)
@@ -55,6 +58,7 @@ def import_vehicle(source: Path, folder: Path, values: XacroValues = NO_VALUES) 
         made = Path(scratch) / folder.name
         made.mkdir()
         foreign = _read(source, values)
+        foreign.command(joints)
         foreign.drive = with_controllers(foreign.drive, drive_of_controllers(source, list(foreign.model.joints)))
         foreign.model = with_own_meshes(foreign, made)
         wheels = find_wheels(foreign)
@@ -110,8 +114,8 @@ def _write(folder: Path, source: Path, foreign: Foreign, made: tuple[DriveWheels
     data = {
         "about": f"{foreign.model.name}, imported from {source.name}.",
         "kind": "ground",
-        "ground": _ground(folder.name, wheels, model, _limits(foreign)),
-        "sensors": sensors_section(foreign, base_from_link),
+        "ground": _ground(folder.name, wheels, model, _limits(foreign)) | _moved(foreign, model),
+        "sensors": sensors_section(foreign, base_from_link, model.carried_by(foreign.commanded)),
     }
     foreign.notes.add(f"guessed: motors{' and the rate of the steering' if wheels.steered else ''}; set them in vehicle.yaml")
     used = {s.mesh for link in model.links.values() for s in (*link.visuals, *link.collisions) if s.mesh is not None}
@@ -177,6 +181,12 @@ def _ground(name: str, wheels: DriveWheels, model: UrdfModel, limits: StatedLimi
         },
         **({"physics_hz": CAR_HZ} if wheels.steered is not None else {}),
     }
+
+
+def _moved(foreign: Foreign, model: UrdfModel) -> dict[str, Any]:
+    """The key of the joints that are moved on command, if there are any."""
+    names = [name for name, joint in model.joints.items() if name in foreign.commanded and joint.kind != "fixed"]
+    return {"joints": names} if names else {}
 
 
 def _max_steering(wheels: DriveWheels, model: UrdfModel) -> float:

@@ -16,6 +16,7 @@ from uvf.models.urdf.robot import UrdfModel
 from uvf.models.urdf.rules import model_faults, wheel_faults
 from uvf.models.vehicle.air import AirBody
 from uvf.models.vehicle.file import GroundBody, VehicleFile, load_vehicle
+from uvf.models.vehicle.joints import joint_faults, mount_faults
 from uvf.models.vehicle.layers import file_of, folders_of
 from uvf.models.vehicle.sensors import Sensors
 from uvf.models.yaml_data import BadInput, FileLocation, convert, nearest, read_yaml
@@ -109,6 +110,9 @@ def _inspect_body(found: Inspection, urdf: Path) -> None:
     wheels = ground.drive.all_wheels if ground is not None else ()
     steering = tuple(ground.drive.steered_wheels) if ground is not None else ()
     faults = [str(fault) for fault in (*wheel_faults(model, wheels, steering), *model_faults(model))]
+    if found.file is not None and ground is not None:
+        faults += joint_faults(model, ground.joints, ground.springs, ground.physics_hz)
+        faults += mount_faults(model, ground.joints, found.file.sensors, FileLocation(str(found.folder / "vehicle.yaml")).at("sensors"))
     found.faults += [line for line in dict.fromkeys(faults) if line not in found.faults]
     if found.file is not None and ground is not None and len(model.roots) == 1 and all(j in model.joints for j in (*wheels, *steering)):
         found.faults += body_faults(model, found.file, found.folder / "vehicle.yaml")

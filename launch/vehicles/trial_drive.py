@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from services.sim_ground.world import BodyPlacement, BulletWorld
+from services.sim_ground.loading import BodyPlacement
+from services.sim_ground.world import BulletWorld
 from uvf.control.steered_ramp import velocity_ramp
 from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import to_euler

@@ -34,6 +34,22 @@ class WheelCommand(_message.Message):
     steering: float
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., left: _Optional[float] = ..., right: _Optional[float] = ..., each: _Optional[_Iterable[float]] = ..., steering: _Optional[float] = ...) -> None: ...
 
+class JointTarget(_message.Message):
+    __slots__ = ("name", "position")
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    POSITION_FIELD_NUMBER: _ClassVar[int]
+    name: str
+    position: float
+    def __init__(self, name: _Optional[str] = ..., position: _Optional[float] = ...) -> None: ...
+
+class MoveJointsRequest(_message.Message):
+    __slots__ = ("joints", "source")
+    JOINTS_FIELD_NUMBER: _ClassVar[int]
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    joints: _containers.RepeatedCompositeFieldContainer[JointTarget]
+    source: str
+    def __init__(self, joints: _Optional[_Iterable[_Union[JointTarget, _Mapping]]] = ..., source: _Optional[str] = ...) -> None: ...
+
 class SurfaceCommand(_message.Message):
     __slots__ = ("timestamp", "aileron", "elevator", "rudder", "throttle", "flap", "brake")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]

@@ -9,9 +9,9 @@ from services.sim_camera.fitted import FittedCamera
 from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
 from uvf.models.aircraft.shape import aircraft_shape
-from uvf.models.scenario import Scenario
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.shapes.solid import Solid
-from uvf.models.urdf.model import engine_urdf
+from uvf.models.urdf.model import engine_urdf, load_urdf
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.vehicle.sensors import Camera, Sensors
 from uvf.models.world.file import WorldFile
@@ -19,6 +19,7 @@ from uvf.models.world.geometry import land, things
 from uvf.models.world.terrain_picture import raised_mesh, with_ground_of
 from uvf.models.yaml_data import BadInput, FileLocation, nearest
 from uvf.runtime.contract.instances import ServiceInstance
+from uvf.sensors.carrier import Carrier
 
 OUTPUTS = {"camera": "image", "chase": "chase", "gimbal": "gimbal"}
 """The output that each camera's pictures go out by."""
@@ -42,10 +43,22 @@ def build(site: Scenario) -> list[ServiceInstance]:
         return None
 
     def make() -> SimCamera:
-        fitted = [FittedCamera(name, camera, site.rng(name, kind), OUTPUTS[kind]) for (name, kind), camera in cameras.items()]
+        fitted = [
+            FittedCamera(name, camera, site.rng(name, kind), OUTPUTS[kind], _carrier(site.members[name], camera))
+            for (name, kind), camera in cameras.items()
+        ]
         return SimCamera(BulletRenderer(world, rendered, looks), fitted, look_of)
 
     return [ServiceInstance(SimCamera, make, writes_for=tuple(dict.fromkeys(name for name, _ in cameras)))]
+
+
+def _carrier(member: MissionVehicle, camera: Camera) -> Carrier | None:
+    """The link that a camera sits on, where joints move it."""
+    body, link = member.file.ground, camera.mount.link
+    if body is None or link is None:
+        return None
+    model = load_urdf(member.folder / body.urdf)
+    return Carrier(model, link) if link in model.carried_by(body.turning_joints) else None
 
 
 def _rendered(world: WorldFile) -> list[Solid]:

@@ -55,6 +55,7 @@ class _Shown:
 
     index: int
     com_in_body: Pose
+    joints: Mapping[str, int]
 
 
 class BulletRenderer:
@@ -80,14 +81,17 @@ class BulletRenderer:
     def _load(self, look: Look) -> _Shown:
         centred = Pose(np.zeros(3), np.array((1.0, 0.0, 0.0, 0.0)))
         if isinstance(look, AircraftShape):
-            return _Shown(_aircraft(look, self._client), centred)
+            return _Shown(_aircraft(look, self._client), centred, {})
         try:
             index = pybullet.loadURDF(str(look), useFixedBase=True, physicsClientId=self._client)
         except pybullet.error as error:
             raise BadInput(f"{look}: PyBullet cannot load it ({error}); check its geometry and joints") from error
         local = pybullet.getDynamicsInfo(index, -1, physicsClientId=self._client)
         x, y, z, w = local[4]
-        return _Shown(index, Pose(np.array(local[3]), np.array((w, x, y, z))))
+        count = pybullet.getNumJoints(index, physicsClientId=self._client)
+        infos = [pybullet.getJointInfo(index, j, physicsClientId=self._client) for j in range(count)]
+        turning = {info[1].decode(): info[0] for info in infos if info[2] != pybullet.JOINT_FIXED}
+        return _Shown(index, Pose(np.array(local[3]), np.array((w, x, y, z))), turning)
 
     def place(self, t: float, poses: Mapping[str, Pose]) -> None:
         """Places vehicles at their true poses, and scripted solids where they are at ``t`` [s]."""
@@ -100,6 +104,15 @@ class BulletRenderer:
             centre = position + rotate(world_from_body, shown.com_in_body.position)
             turned = multiply(world_from_body, shown.com_in_body.world_from_body)
             pybullet.resetBasePositionAndOrientation(shown.index, centre.tolist(), _xyzw(turned), physicsClientId=self._client)
+
+    def turn(self, positions: Mapping[str, Mapping[str, float]]) -> None:
+        """Turns joints of vehicles to these positions [rad or m], by their names; other names are passed over."""
+        for name, joints in positions.items():
+            if (shown := self._vehicles.get(name)) is None:
+                continue
+            for joint, position in joints.items():
+                if (number := shown.joints.get(joint)) is not None:
+                    pybullet.resetJointState(shown.index, number, position, physicsClientId=self._client)
 
     def show(self, guests: Mapping[str, Solid | Look]) -> None:
         """Shows what has been spawned: solids where they are now; vehicles are placed like the others."""

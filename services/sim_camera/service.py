@@ -13,6 +13,7 @@ from uvf.models.vehicle.sensors import Camera
 from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, optional, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import array, seconds, wxyz
+from uvf.runtime.messages.joints import positions_of
 from uvf.runtime.messages.sensor_frames import mounted
 from uvf.runtime.messages.spawned import solid_of, sound_objects
 
@@ -25,6 +26,10 @@ class Renderer(Protocol):
 
     def place(self, t: float, poses: Mapping[str, Pose]) -> None:
         """Places vehicles at their true poses, and scripted solids where they are at ``t`` [s]."""
+        ...
+
+    def turn(self, positions: Mapping[str, Mapping[str, float]]) -> None:
+        """Turns joints of vehicles to these positions [rad or m]."""
         ...
 
     def show(self, guests: Mapping[str, Solid | Look]) -> None:
@@ -48,9 +53,10 @@ class SimCamera(Service):
     scope = "world"
 
     class Inputs(Reads):
-        """True poses, spawned objects, and gimbal commands."""
+        """True poses, joints, spawned objects, and gimbal commands."""
 
         truth: dict[str, NavState] = each_vehicle(optional(topics.TRUTH))
+        joints: dict[str, JointStates] = each_vehicle(optional(topics.JOINTS))
         objects: SimObjects | None = optional(topics.OBJECTS)
         aircraft: SimObjects | None = optional(topics.AIR_OBJECTS)
         gimbals: dict[str, GimbalCommand] = each_vehicle(optional(topics.GIMBAL.by("*")))
@@ -81,6 +87,8 @@ class SimCamera(Service):
         self._renderer.show({name: look for name, look in looks.items() if look is not None})
         poses = {name: Pose(array(state.position), wxyz(state.orientation)) for name, state in now.truth.items()}
         self._renderer.place(t, poses)
+        joints = {name: positions_of(states) for name, states in now.joints.items()}
+        self._renderer.turn(joints)
         out = self.Outputs()
         for fitted in self._cameras:
             if fitted.aim is not None and (name := fitted.vehicle) in poses:
@@ -90,7 +98,7 @@ class SimCamera(Service):
                 taken = now.truth[name].timestamp
                 out.add("gimbal_frame", name, mounted(name, fitted.camera, fitted.aim.body_from_camera, seconds(taken)))
                 out.add("gimbal_joints", name, joints_message(taken, fitted.aim.joints))
-            if (arrived := self._take(t, fitted, now.truth, poses)) is not None:
+            if (arrived := self._take(t, fitted, now.truth, poses, joints)) is not None:
                 out.add(fitted.output, fitted.vehicle, arrived.image)
                 if arrived.depth is not None:
                     out.add("depth", fitted.vehicle, arrived.depth)
@@ -100,11 +108,18 @@ class SimCamera(Service):
                 out.add(INFO[fitted.output], fitted.vehicle, info_message(t, fitted.frame, fitted.camera))
         return out
 
-    def _take(self, t: float, fitted: FittedCamera, truth: Mapping[str, NavState], poses: Mapping[str, Pose]) -> Pictures | None:
+    def _take(
+        self,
+        t: float,
+        fitted: FittedCamera,
+        truth: Mapping[str, NavState],
+        poses: Mapping[str, Pose],
+        joints: Mapping[str, Mapping[str, float]],
+    ) -> Pictures | None:
         name = fitted.vehicle
         if name not in poses:
             return None
-        return fitted.step(t, truth[name].timestamp, lambda: self._renderer.take(*fitted.looking(poses[name])))
+        return fitted.step(t, truth[name].timestamp, lambda: self._renderer.take(*fitted.looking(poses[name], joints.get(name, {}))))
 
     def close(self) -> None:
         """Releases the renderer."""

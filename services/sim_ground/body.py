@@ -42,7 +42,7 @@ class BodyState(NamedTuple):
 
     position: (3,) m, world; velocity: (3,) m/s, world; world_from_body: wxyz; angular_velocity: (3,) rad/s, body (FLU);
     wheel_angles: of each driven wheel, as its file has them [rad] since the start, unwrapped; wheel_speeds likewise [rad/s];
-    steered_to: of each joint that steers [rad], as the URDF counts.
+    steered_to: of each joint that steers [rad], as the URDF counts; joints: of all others that move, positions [rad or m] and speeds.
     """
 
     position: Floats
@@ -52,6 +52,7 @@ class BodyState(NamedTuple):
     wheel_angles: tuple[float, ...]
     wheel_speeds: tuple[float, ...]
     steered_to: tuple[float, ...] = ()
+    joints: tuple[tuple[float, float], ...] = ()
 
 
 @compiled

@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 from functools import partial
 
+from services.sim_ground.loading import BodyPlacement
 from services.sim_ground.rig import STEP_HZ, Rig
 from services.sim_ground.service import SimGround
 from services.sim_ground.stage import GroundStage, JoiningVehicle
-from services.sim_ground.world import BodyPlacement, BulletWorld
+from services.sim_ground.world import BulletWorld
 from uvf.maths.raycast import warm_up
 from uvf.maths.se2 import Pose2
 from uvf.models.aircraft.shape import aircraft_shape
@@ -15,6 +16,7 @@ from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.urdf.model import check_urdf, engine_urdf, load_urdf
 from uvf.models.urdf.outline import ground_outline
 from uvf.models.vehicle.file import GroundBody, load_vehicle
+from uvf.models.vehicle.joints import joint_faults, mount_faults
 from uvf.models.vehicle.sensors import Sensors
 from uvf.models.world.footing import COARSE, Footing
 from uvf.models.world.geometry import solids
@@ -60,8 +62,7 @@ def _join(site: Scenario, surroundings: Surroundings, name: str, model: str, sta
         raise BadInput(f"'{model}' is no ground vehicle; this is the ground simulator")
     member = MissionVehicle(name, Vehicle(model=model, start=StartPose(x=x, y=y, yaw=yaw), system_id=1), file, site.vehicles_folder / model)
     urdf = member.folder / file.ground.urdf
-    check_urdf(urdf, file.ground.drive.all_wheels, file.ground.drive.steered_wheels)
-    _check_rates(member, file.ground)
+    _check_body(member, file.ground)
     return JoiningVehicle(
         BodyPlacement(file.ground, engine_urdf(urdf), start, z), Rig(site, member, file.ground, surroundings.still), load_urdf(urdf)
     )
@@ -75,8 +76,7 @@ def _checked(site: Scenario, member: MissionVehicle, footing: Footing) -> float:
     """z [m] of the ground at the start; of a slope, so much above that no wheel begins in it. Raises for what would fail in the engine."""
     body = member.file.ground
     assert body is not None
-    check_urdf(member.folder / body.urdf, body.drive.all_wheels, body.drive.steered_wheels)
-    _check_rates(member, body)
+    _check_body(member, body)
     start = member.entry.start
     room, height, slope = footing.at(start.x, start.y)
     if not footing.is_free(Pose2(start.x, start.y, start.yaw), ground_outline(member.folder / body.urdf, body.radius)):
@@ -91,6 +91,17 @@ def _check_chargers(site: Scenario, footing: Footing) -> None:
         if footing.at(charger.x, charger.y).room == 0.0:
             place = FileLocation(str(site.mission_path)).at("chargers", i)
             raise BadInput(f"{place}: ({charger.x:g}, {charger.y:g}) lies under a wall or furniture, where no vehicle can stand; move it")
+
+
+def _check_body(member: MissionVehicle, body: GroundBody) -> None:
+    model = check_urdf(member.folder / body.urdf, body.drive.all_wheels, body.drive.steered_wheels)
+    place = FileLocation(str(member.folder / "vehicle.yaml")).at("sensors")
+    for fault in (
+        *joint_faults(model, body.joints, body.springs, body.physics_hz),
+        *mount_faults(model, body.joints, member.file.sensors, place),
+    ):
+        raise BadInput(fault)
+    _check_rates(member, body)
 
 
 def _check_rates(member: MissionVehicle, body: GroundBody) -> None:

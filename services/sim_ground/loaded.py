@@ -7,6 +7,7 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
+from services.sim_ground.joints import JointDrives, Springs
 from services.sim_ground.motor import WheelMotor
 from services.sim_ground.steering import SteeringGear
 from services.sim_ground.treads import Treads
@@ -33,8 +34,15 @@ class LoadedVehicle:
     soles: frozenset[int]
     """Links with which it stands on a level floor: wheels and castors."""
     steering: SteeringGear | None = None
+    drives: JointDrives | None = None
+    springs: Springs | None = None
     grip: tuple[float, float] = (1.0, 1.0)
     """Share of it that the wheels of the left and the right side have now."""
+
+    @property
+    def other_joints(self) -> tuple[int, ...]:
+        """Those that are moved on command, then those on springs."""
+        return (*(self.drives.joints if self.drives else ()), *(self.springs.joints if self.springs else ()))
 
     def by_wheel(self, speeds: Sequence[float]) -> list[float]:
         """Speeds of the drive's channels [rad/s] wheel by wheel; 0 where there are not as many as it has, or one is no number."""
@@ -44,9 +52,13 @@ class LoadedVehicle:
 
 @dataclass(frozen=True)
 class Saved:
-    """A state of the engine by its number; by vehicle the motors' references [rad/s], the treads' deflections [m], the steering [rad]."""
+    """A state of the engine by its number; by vehicle the motors' references [rad/s], the treads' deflections [m], the steering [rad].
+
+    joints: where their drives hold them [rad or m].
+    """
 
     state: int
     references: dict[str, list[float]]
     deflections: dict[str, Floats]
     steering: dict[str, float]
+    joints: dict[str, list[float]]

@@ -28,10 +28,12 @@ def contact_message(t: float, bumpers: Sequence[Bumper], touches: Sequence[Touch
 
 
 def joints_message(t: float, ground: GroundBody, body: BodyState) -> JointStates:
-    """Angles [rad] and speeds [rad/s] of the driven wheels, and angles of the joints that steer, as a message stamped ``t`` [s]."""
+    """Positions and speeds of the joints that are measured, of those that steer positions alone, as a message stamped ``t`` [s]."""
     rows = zip(ground.drive.joints, body.wheel_angles, body.wheel_speeds, strict=True)
     joints = [JointState(name=name, position=angle, velocity=speed) for name, angle, speed in rows]
     joints += [JointState(name=name, position=angle) for name, angle in zip(ground.drive.steered_wheels, body.steered_to, strict=True)]
+    others = zip((*ground.joints, *ground.springs), body.joints, strict=True)
+    joints += [JointState(name=name, position=position, velocity=speed) for name, (position, speed) in others]
     return JointStates(timestamp=stamp(t), joints=joints)
 
 

@@ -66,7 +66,7 @@ class Rig:
 
     def __init__(self, site: Scenario, member: MissionVehicle, ground: GroundBody, scene: Scene) -> None:
         """scene: what stands in the world."""
-        self._links = Links(member.folder / ground.urdf, (*ground.drive.joints, *ground.drive.steered_wheels))
+        self._links = Links(member.folder / ground.urdf, ground.turning_joints)
         self.ground = ground
         self._site = site
         self._scene = scene

@@ -31,6 +31,7 @@ from services.sim_ground.stage import GroundStage, Stageable
 from uvf.maths.raycast import MovingBody
 from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, optional, replies, request, topic
 from uvf.runtime.contract.service import Service
+from uvf.runtime.messages.joints import positions_of
 from uvf.runtime.messages.readings.faults import Faults
 from uvf.runtime.messages.readings.sensors import later
 from uvf.runtime.messages.wheels import speeds_of
@@ -44,8 +45,18 @@ class GroundWorld(Stageable, Protocol):
     rate: float
     """Physics steps a second."""
 
-    def advance(self, wheels: Mapping[str, Sequence[float]], duration: float, since: float, steering: Mapping[str, float]) -> None:
-        """Moves the world from simulation time ``since`` [s] by ``duration`` [s] with these wheel speed commands [rad/s]."""
+    def advance(
+        self,
+        wheels: Mapping[str, Sequence[float]],
+        duration: float,
+        since: float,
+        steering: Mapping[str, float],
+        joints: Mapping[str, Mapping[str, float]],
+    ) -> None:
+        """Moves the world from simulation time ``since`` [s] by ``duration`` [s].
+
+        wheels: speed commands [rad/s]; steering [rad]; joints: positions of what else is moved [rad or m].
+        """
         ...
 
     def state(self, vehicle: str) -> BodyState:
@@ -74,7 +85,7 @@ class GroundWorld(Stageable, Protocol):
 
 
 class SimGround(Service):
-    """All ground vehicles in one world. A vehicle whose command is older than 0.5 s brakes its wheels to a stop.
+    """All ground vehicles in one world. A vehicle whose command is older than 0.5 s brakes its wheels to a stop and holds its joints.
 
     Truth is the motion of base_link: the point on the floor under the axle's middle, in the world frame.
     """
@@ -88,6 +99,7 @@ class SimGround(Service):
         """Wheel commands, true motion of the aircraft, and requests."""
 
         commands: dict[str, WheelCommand] = each_vehicle(optional(topics.WHEEL_COMMAND))
+        joint_commands: dict[str, JointStates] = each_vehicle(optional(topics.JOINT_COMMAND))
         truth: dict[str, NavState] = each_vehicle(optional(topics.TRUTH))
         flying: SimObjects | None = optional(topics.AIR_OBJECTS)
         spawn: list[SpawnRequest] = request(topics.SPAWN)
@@ -146,7 +158,7 @@ class SimGround(Service):
         self._world.guide(self._guests)
         for name in self._stage.rigs:
             self._world.set_grip(name, self._faults.grip(t, name))
-        self._advance(t, {name: c for name, c in now.commands.items() if not self._is_flat(name)})
+        self._advance(t, {n: c for n, c in now.commands.items() if not self._is_flat(n)}, _positions(now.joint_commands, self._is_flat))
         out, n, stage = self._read(t), round(t * self.hz), self._stage
         flying = [o.name for o in now.flying.objects] if now.flying else []
         out.spawn = [stage.spawn(r, flying) for r in now.spawn]
@@ -187,14 +199,14 @@ class SimGround(Service):
         """s; the clock, unless a state was restored: then that of the state and what has passed since."""
         return (round(t * self.hz) - self._stage.late) / self.hz if self._stage.late else t
 
-    def _advance(self, t: float, commands: Mapping[str, WheelCommand]) -> None:
+    def _advance(self, t: float, commands: Mapping[str, WheelCommand], joints: Mapping[str, Mapping[str, float]]) -> None:
         """To ``t`` [s], looking at those who read faster than this service steps after each step of the physics."""
         quick = [name for name, rig in self._stage.rigs.items() if rig.is_quick]
         parts = round(self._world.rate / self.hz) if quick else 1
         part = 1 / self.hz / parts
         wheels, steering = {name: speeds_of(c) for name, c in commands.items()}, {name: c.steering for name, c in commands.items()}
         for left in range(parts - 1, -1, -1):
-            self._world.advance(wheels, part, t - (left + 1) * part, steering)
+            self._world.advance(wheels, part, t - (left + 1) * part, steering, joints)
             for name in quick if left else ():
                 self._stage.rigs[name].glance(self._sensors_time(t) - left * part, self._world.state(name))
 
@@ -209,6 +221,11 @@ class SimGround(Service):
     def close(self) -> None:
         """Releases the engine."""
         self._world.close()
+
+
+def _positions(commands: Mapping[str, JointStates], is_flat: Callable[[str], bool]) -> dict[str, dict[str, float]]:
+    """Of joints by their vehicles and names [rad or m], as told by those that have power."""
+    return {vehicle: positions_of(told) for vehicle, told in commands.items() if not is_flat(vehicle)}
 
 
 def _others(name: str, bodies: Callable[[], tuple[list[MovingBody], dict[str, MovingBody]]]) -> list[MovingBody]:

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
+from services.sim_ground.loading import BodyPlacement
 from services.sim_ground.rig import Rig
-from services.sim_ground.world import BodyPlacement
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.yaml_data import BadInput, listed, nearest

@@ -5,9 +5,7 @@ are put where they are at each physics step, with the velocity they have, so tha
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from math import inf, nan
-from pathlib import Path
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,36 +14,20 @@ from services.sim_ground.body import BodyState, Motion, Touch, base_motion
 from services.sim_ground.engine import PhysicsEngine
 from services.sim_ground.guest import Course
 from services.sim_ground.loaded import LoadedVehicle, Saved
-from services.sim_ground.motor import WheelMotor
-from services.sim_ground.steering import SteeringGear
-from services.sim_ground.touching import FLOOR, GROUND, SOLE, Bodies
+from services.sim_ground.loading import BodyPlacement, VehicleLoader
+from services.sim_ground.touching import FLOOR, GROUND, Bodies
 from services.sim_ground.treads import Rolling, Treads
-from uvf.maths.geodesy import GRAVITY
-from uvf.maths.rotations import IDENTITY, from_euler, multiply, rotate
+from uvf.maths.rotations import IDENTITY, multiply, rotate
 from uvf.models.shapes.solid import Keyframes, Solid, pose_at
-from uvf.models.vehicle.drive import AckermannFile
-from uvf.models.vehicle.file import Friction, GroundBody
 
 Floats = NDArray[np.float64]
 AWAY = np.array((0.0, 0.0, 1e4))  # m
 DEEP = 2e-3  # m, from which on one body is inside another
 FALLEN = 0.5  # cosine of the tilt from which on a vehicle no longer stands on its wheels
-FREE = 0.0  # friction across rollers, and along wheels that nothing drives
-SAG = 1e-3  # m, by which tyres of several wheels a side give under the vehicle's weight
-SETTLES = 0.7  # damping ratio of that
 STILL = (0.0, 0.0, 0.0)
 UNSTEERED: Mapping[str, float] = {}
+UNMOVED: Mapping[str, Mapping[str, float]] = {}
 SETTLING = 0.3  # s of physics before the start: the wheels sink into their contacts
-
-
-@dataclass(frozen=True)
-class BodyPlacement:
-    """A vehicle to add to the world: its file's data, its URDF, its start (x, y [m], yaw [rad], world) and z [m] of what it stands on."""
-
-    body: GroundBody
-    urdf: Path
-    start: tuple[float, float, float]
-    z: float = 0.0
 
 
 class BulletWorld:
@@ -61,6 +43,7 @@ class BulletWorld:
         self._drawn: dict[str, float] = {}
         self._floor = self.engine.add_floor()
         self._bodies.names[self._floor] = FLOOR
+        self._loader = VehicleLoader(self.engine, self.rate, self._floor)
         for solid in solids:
             index = self._add(solid.name, solid, solid.position, solid.orientation)
             if solid.path is None:
@@ -76,63 +59,9 @@ class BulletWorld:
         return index
 
     def _load(self, name: str, vehicle: BodyPlacement) -> LoadedVehicle:
-        index = self.engine.load(vehicle.urdf)
-        self._bodies.names[index] = name
-        joints, friction, drive = self.engine.joints(index), vehicle.body.friction, vehicle.body.drive
-        wheels = tuple(joints[name] for name in drive.joints)
-        self._set_friction(index, friction, wheels, [j for j in joints.values() if j not in wheels])
-        com_in_base = self.engine.centre_of_mass(index)
-        self._place(index, replace(vehicle, start=(0.0, 0.0, 0.0), z=0.0), com_in_base)
-        soles = frozenset(link for link, _ in self.engine.near(index, self._floor, SOLE))
-        steering = self._steering(index, drive, joints) if isinstance(drive, AckermannFile) else None
-        treads = self._treads(index, vehicle.body, wheels, [joints[name] for name in drive.steered_wheels.values()])
-        self._place(index, vehicle, com_in_base)
-        motors = tuple(WheelMotor(vehicle.body.motor, 1 / self.rate) for _ in wheels)
-        most = max(friction.mu, friction.mu2)
-        return LoadedVehicle(index, drive.on_left, drive.channels, wheels, motors, com_in_base, most, treads, soles, steering)
-
-    def _steering(self, index: int, drive: AckermannFile, joints: Mapping[str, int]) -> SteeringGear:
-        """Of a vehicle that stands at the origin."""
-        steers = [joints[name] for name in drive.steered]
-        wheels = self.engine.link_poses(index, [joints[name] for name in drive.steered.values()])
-        places = [(float(wheel.position[0]), float(wheel.position[1])) for wheel in wheels]
-        links = zip(steers, self.engine.link_poses(index, steers), strict=True)
-        signs = [float(np.sign(rotate(link.orientation, self.engine.axle(index, joint))[2])) for joint, link in links]
-        return SteeringGear(steers, places, signs, drive.kinematics, drive.steering_rate)
-
-    def _set_friction(self, index: int, friction: Friction, wheels: Sequence[int], sliding: Sequence[int]) -> None:
-        """The floor's coefficient is 1 and the engine multiplies both, so that the vehicle's alone count."""
-        most = max(friction.mu, friction.mu2)
-        for wheel in wheels:
-            shares = ((friction.mu + (friction.mu2 - friction.mu) * self.engine.axle(index, wheel) ** 2) / most).tolist()
-            self.engine.set_dynamics(index, wheel, lateralFriction=most, anisotropicFriction=shares)
-        for link in sliding:
-            self.engine.set_dynamics(index, link, lateralFriction=friction.castor)
-
-    def _treads(self, index: int, body: GroundBody, driven: Sequence[int], steered: Sequence[int]) -> Treads | None:
-        """None where wheels roll on and the engine's own friction does. driven, steered: links of wheels; steered ones roll freely.
-
-        Tyres of several wheels a side give, so that all of them carry: a rigid body on four points stands on any three.
-        """
-        drive, wheels = body.drive, [*driven, *steered]
-        if not drive.scrubs and drive.holds_at is None and not steered:
-            return None
-        mass = self.engine.mass(index) / len(wheels)
-        stiffness = mass * GRAVITY / SAG
-        damping = 2.0 * SETTLES * float(np.sqrt(stiffness * mass))
-        for wheel in wheels:
-            self.engine.set_dynamics(index, wheel, lateralFriction=0.0, contactStiffness=stiffness, contactDamping=damping)
-        axles = np.array([self.engine.axle(index, w) for w in wheels])
-        mu, mu2 = body.friction.mu, body.friction.mu2 if drive.holds_at is None else FREE
-        grip = np.array([(mu, mu2)] * len(driven) + [(FREE, mu2)] * len(steered))
-        on_left = drive.on_left + tuple(link.position[1] > 0.0 for link in self.engine.link_poses(index, steered))
-        return Treads(wheels, axles, grip, on_left, drive.holds_at or (0.0,) * len(wheels), drive.wheel_radius if steered else inf)
-
-    def _place(self, index: int, vehicle: BodyPlacement, com_in_base: tuple[Floats, Floats]) -> None:
-        x, y, yaw = vehicle.start
-        world_from_base = from_euler(0.0, 0.0, yaw)
-        position = np.array((x, y, vehicle.z)) + rotate(world_from_base, com_in_base[0])
-        self.engine.place(index, position, multiply(world_from_base, com_in_base[1]))
+        loaded = self._loader.load(vehicle)
+        self._bodies.names[loaded.index] = name
+        return loaded
 
     def set_grip(self, vehicle: str, shares: tuple[float, float]) -> None:
         """Leaves a vehicle's left and right wheel a share of their friction from now on, 0 to 1."""
@@ -145,12 +74,17 @@ class BulletWorld:
                     self.engine.set_dynamics(loaded.index, wheel, lateralFriction=share * loaded.friction)
 
     def advance(
-        self, wheels: Mapping[str, Sequence[float]], duration: float, since: float = 0.0, steering: Mapping[str, float] = UNSTEERED
+        self,
+        wheels: Mapping[str, Sequence[float]],
+        duration: float,
+        since: float = 0.0,
+        steering: Mapping[str, float] = UNSTEERED,
+        joints: Mapping[str, Mapping[str, float]] = UNMOVED,
     ) -> None:
         """Moves the world by ``duration`` [s]; a vehicle without a finite command brakes its wheels to a stop.
 
         since: simulation time [s] at the beginning, for scripted solids. wheels: speed commands [rad/s], one for each channel of a drive.
-        steering: of cars [rad, left positive]; one that is not named keeps its steering where it is.
+        steering: of cars [rad, left positive]; one that is not named keeps its steering where it is. joints: positions [rad or m] likewise.
         """
         wanted = {name: vehicle.by_wheel(wheels.get(name, ())) for name, vehicle in self._vehicles.items()}
         for n in range(round(duration * self.rate)):
@@ -160,9 +94,18 @@ class BulletWorld:
                 self._drawn[name] = self._drawn.get(name, 0.0) + self._drive(vehicle, wanted[name])
                 if vehicle.steering is not None:
                     self.engine.hold(vehicle.index, vehicle.steering.joints, vehicle.steering.turn(steering.get(name, nan), 1 / self.rate))
+                self._move_joints(vehicle, joints.get(name, UNSTEERED))
                 if vehicle.treads is not None:
                     self._push_off(vehicle, vehicle.treads)
             self.engine.step()
+
+    def _move_joints(self, vehicle: LoadedVehicle, wanted: Mapping[str, float]) -> None:
+        """Those that are moved on command, and those on springs. wanted: rad or m."""
+        if (drives := vehicle.drives) is not None:
+            self.engine.hold(vehicle.index, drives.joints, drives.lead(wanted, 1 / self.rate), drives.efforts)
+        if (springs := vehicle.springs) is not None:
+            motions = self.engine.joint_motions(vehicle.index, springs.joints)
+            self.engine.drive(vehicle.index, springs.joints, springs.efforts(motions, 1 / self.rate))
 
     def motor_energy(self, vehicle: str) -> float:
         """Energy [J] that a vehicle's motors have drawn since the last call."""
@@ -211,11 +154,13 @@ class BulletWorld:
         loaded = self._vehicles[vehicle]
         joints = self.engine.joint_motions(loaded.index, loaded.wheels)
         steers = loaded.steering.joints if loaded.steering is not None else ()
+        others = loaded.other_joints
         return BodyState(
             *self._motion(loaded),
             wheel_angles=tuple(j.angle for j in joints),
             wheel_speeds=tuple(j.speed for j in joints),
             steered_to=tuple(j.angle for j in self.engine.joint_motions(loaded.index, steers)) if steers else (),
+            joints=tuple((j.angle, j.speed) for j in self.engine.joint_motions(loaded.index, others)) if others else (),
         )
 
     def _motion(self, loaded: LoadedVehicle) -> Motion:
@@ -305,7 +250,8 @@ class BulletWorld:
         references = {name: [m.reference for m in v.motors] for name, v in self._vehicles.items()}
         deflections = {name: v.treads.deflections.copy() for name, v in self._vehicles.items() if v.treads is not None}
         steering = {name: v.steering.angle for name, v in self._vehicles.items() if v.steering is not None}
-        return Saved(self.engine.save(list(self._bodies.names)), references, deflections, steering)
+        joints = {name: list(v.drives.positions) for name, v in self._vehicles.items() if v.drives is not None}
+        return Saved(self.engine.save(list(self._bodies.names)), references, deflections, steering, joints)
 
     def restore(self, saved: Saved) -> None:
         """Restores a saved state; the same bodies must be there as then."""
@@ -321,6 +267,10 @@ class BulletWorld:
             gear = self._vehicles[name].steering
             assert gear is not None
             gear.angle = angle
+        for name, positions in saved.joints.items():
+            drives = self._vehicles[name].drives
+            assert drives is not None
+            drives.positions[:] = positions
 
     def forget(self, saved: Saved) -> None:
         """Releases a saved state."""

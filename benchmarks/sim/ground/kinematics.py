@@ -17,7 +17,8 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from services.sim_ground.world import BodyPlacement, BulletWorld
+from services.sim_ground.loading import BodyPlacement
+from services.sim_ground.world import BulletWorld
 from uvf.control.steered_ramp import velocity_ramp
 from uvf.maths.kinematics import Twist, WheelSpeeds, move
 from uvf.maths.rotations import to_euler, wrap

@@ -9,6 +9,7 @@ import itertools
 import tempfile
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import psutil
@@ -77,6 +78,10 @@ def simulator(site: Scenario, log: Path | None = None) -> list[float]:
         lockstep.close()
 
 
+NOTHING = ("spawn", "remove", "set_pose", "save", "restore")
+IDLE: dict[str, Any] = {"joint_commands": {}, "truth": {}, "flying": None, **{name: [] for name in NOTHING}}
+
+
 def engine(site: Scenario) -> list[float]:
     """PyBullet's steps alone, the wheels turning."""
     (host,) = build(site)
@@ -84,7 +89,7 @@ def engine(site: Scenario) -> list[float]:
     world = service._world  # type: ignore[attr-defined]
     commands = {name: WheelCommand(left=0.6, right=5.4) for name in site.members}
     for n in range(1, 51):
-        stepped(service, n / 100, commands=commands, truth={}, flying=None, spawn=[], remove=[], set_pose=[], save=[], restore=[])
+        stepped(service, n / 100, **IDLE, commands=commands)
     with stopwatch() as taken:
         for _ in range(round(SECONDS * world.rate)):
             pybullet.stepSimulation(physicsClientId=world.engine.client)

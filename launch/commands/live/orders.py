@@ -1,4 +1,4 @@
-"""``uvf arm | disarm | mode | goal | cancel``: one request to a vehicle of the running system."""
+"""``uvf arm | disarm | mode | goal | cancel | joints``: one request to a vehicle of the running system."""
 
 from contextlib import suppress
 from math import nan
@@ -11,6 +11,7 @@ from uvf.models.yaml_data import BadInput, nearest
 
 Height = Annotated[float | None, typer.Argument(help="m, world frame, of an aircraft; left out: as high as it is.")]
 Yaw = Annotated[float | None, typer.Option(help="rad, from east, left positive: how it is to stand there. Left out: anyhow.")]
+Places = Annotated[list[str], typer.Argument(help="As lift_joint=0.3: m, or rad of a joint that turns.")]
 Force = Annotated[bool, typer.Option("--force", help="In the air, too: the motor stops.")]
 
 
@@ -62,6 +63,25 @@ def cancel(vehicle: Vehicle) -> None:
     from schemas.messages import CancelRequest
 
     _ask(vehicle, topics.CANCEL, CancelRequest(source=SOURCE), "its goal is cancelled")
+
+
+def joints(vehicle: Vehicle, places: Places) -> None:
+    """Move joints of a ground vehicle: a lift, a pan, an arm; those that its vehicle.yaml lists under ground: joints."""
+    from schemas import topics
+    from schemas.messages import JointTarget, MoveJointsRequest
+
+    with running_system() as run:
+        targets = [JointTarget(name=name, position=position) for name, position in map(_place_of, places)]
+        tell_refusals([run.ask(vehicle, topics.MOVE_JOINTS, MoveJointsRequest(joints=targets, source=SOURCE))])
+    typer.echo(f"{vehicle}: {', '.join(places)}")
+
+
+def _place_of(text: str) -> tuple[str, float]:
+    name, _, position = text.partition("=")
+    try:
+        return name, float(position)
+    except ValueError:
+        raise BadInput(f"'{text}': a joint and where it is to go, as lift_joint=0.3") from None
 
 
 def _ask(vehicle: str, request: Any, message: Any, done: str) -> None:

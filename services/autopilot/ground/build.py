@@ -6,6 +6,8 @@ from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.safety import SensorLooks
 from services.autopilot.ground.service import GroundAutopilot
 from uvf.models.scenario import MissionVehicle, Scenario
+from uvf.models.urdf.model import load_urdf
+from uvf.models.vehicle.joints import moved_joints
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.plans.fences import fence_message, fencing
@@ -40,7 +42,9 @@ def _host(member: MissionVehicle, site: Scenario) -> ServiceInstance:
     begins = armed and (job.explore or bool(items))
     params = member.params("autopilot_ground", GroundAutopilotParams)
 
+    joints = moved_joints(load_urdf(member.folder / body.urdf), body.joints) if body.joints else {}
+
     def make() -> GroundAutopilot:
-        return GroundAutopilot(body, (start.x, start.y), (armed, begins, items), member.entry.system_id, params, fence, looks)
+        return GroundAutopilot(body, (start.x, start.y), (armed, begins, items), member.entry.system_id, params, fence, looks, joints)
 
     return ServiceInstance(GroundAutopilot, make, member.name)

@@ -10,12 +10,14 @@ from schemas.messages import (
     FenceRequest,
     FrameTransform,
     Imu,
+    JointStates,
     LaserScan,
     Link,
     Mission,
     MissionProgress,
     MissionRequest,
     ModeRequest,
+    MoveJointsRequest,
     Odometry,
     ParamValues,
     PoseInFrame,
@@ -51,6 +53,7 @@ class Inputs(Reads):
     ticks: WheelTicks | None = optional(topics.WHEELS)
     scan: LaserScan | None = optional(topics.SCAN)
     other_scans: list[LaserScan] = optional(every(topics.OTHER_SCANS))
+    joints: JointStates | None = optional(topics.JOINTS)
     correction: FrameTransform | None = optional(topics.TF_MAP)
     battery: Battery | None = optional(topics.BATTERY)
     range: list[Range] = optional(every(topics.RANGE))
@@ -61,12 +64,14 @@ class Inputs(Reads):
     set_fence: list[FenceRequest] = request(topics.SET_FENCE)
     order: list[VehicleCommandRequest] = request(topics.VEHICLE_COMMAND)
     set_rally: list[RallyRequest] = request(topics.SET_RALLY)
+    move_joints: list[MoveJointsRequest] = request(topics.MOVE_JOINTS)
 
 
 class Outputs(Writes):
     """Messages and replies that the ground autopilot publishes."""
 
     wheels: WheelCommand | None = topic(topics.WHEEL_COMMAND)
+    joints: JointStates | None = topic(topics.JOINT_COMMAND)
     status: VehicleStatus | None = topic(topics.STATUS)
     mission: Mission | None = topic(topics.MISSION)
     bounds: Fence | None = topic(topics.FENCE)
@@ -81,6 +86,7 @@ class Outputs(Writes):
     set_fence: list[Reply] = replies(topics.SET_FENCE)
     order: list[Reply] = replies(topics.VEHICLE_COMMAND)
     set_rally: list[Reply] = replies(topics.SET_RALLY)
+    move_joints: list[Reply] = replies(topics.MOVE_JOINTS)
 
 
 class Recalls(Reads):

@@ -11,11 +11,13 @@ from schemas.messages import (
     Event,
     Fence,
     FenceRequest,
+    JointStates,
     Kind,
     MissionItem,
     MissionRequest,
     Mode,
     ModeRequest,
+    MoveJointsRequest,
     RallyPoints,
     Reply,
     SetCurrentRequest,
@@ -26,6 +28,7 @@ from schemas.messages import (
 from services.autopilot.failsafes import FailsafeAction
 from services.autopilot.ground import fence as fences
 from services.autopilot.ground import interface, orders
+from services.autopilot.ground.joints import JointMover
 from services.autopilot.ground.mission import MissionEngine, Point, mission_of, refusal, vector
 from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, ActiveCommand, VelocityCommand, choose
 from services.autopilot.ground.params import GroundAutopilotParams
@@ -37,6 +40,7 @@ from uvf.control.drive_limits import within_limits
 from uvf.control.steered_ramp import velocity_ramp
 from uvf.maths.kinematics import Twist
 from uvf.models.vehicle.file import GroundBody
+from uvf.models.vehicle.joints import MovedJoint
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import mode_name, seconds, stamp, yaw_of
 from uvf.runtime.messages.wheels import wheel_command
@@ -47,6 +51,7 @@ STATUS_EVERY, PROGRESS_EVERY = 5, 25
 UNKNOWN_BATTERY = -1.0
 REFUSALS_EVERY = 10.0  # s between two events about commands that are no numbers
 
+NO_JOINTS: Mapping[str, MovedJoint] = {}
 
 SENDERS = ("teleop", "mavlink", "gcs", "client", "executive", "offboard", "planner")
 """Inputs of commands, by who sends them."""
@@ -73,11 +78,16 @@ class GroundAutopilot(Service):
         params: GroundAutopilotParams,
         fence: Fence | None = None,
         looks: SensorLooks = SensorLooks(),  # noqa: B008  it cannot be changed
+        joints: Mapping[str, MovedJoint] = NO_JOINTS,
     ) -> None:
-        """home: start pose [m, world]; job: whether it is armed, whether it begins at once, and the mission's items, perhaps none."""
+        """home: start pose [m, world]; job: whether it is armed, whether it begins at once, and the mission's items, perhaps none.
+
+        joints: that are moved on command, beside wheels and steering.
+        """
         self.params = params
         self._body = body
-        self._made_with = (body, home, system_id, looks)
+        self._made_with = (body, home, system_id, looks, joints)
+        self._mover = JointMover(joints)
         self._system_id = system_id
         self._drive = body.drive.kinematics
         self._ramp = velocity_ramp(body)
@@ -117,6 +127,7 @@ class GroundAutopilot(Service):
         out.set_fence = [self._set_fence(t, r) for r in now.set_fence]
         out.order = [self._carry_out(t, r) for r in now.order]
         out.set_rally = [self._set_rally(r.rally) for r in now.set_rally]
+        out.move_joints = [self._move_joints(t, r, now.joints) for r in now.move_joints]
         commands = {name: getattr(now, name) for name in SENDERS}
         position = (now.pose.pose.position.x, now.pose.pose.position.y) if now.pose is not None else None
         self._follow_mission(t, position)
@@ -125,6 +136,7 @@ class GroundAutopilot(Service):
         self._heard |= {k: _velocity_command(c) for k, c in commands.items() if c is not None}
         self._choose(t, {k: replace(c, lasts=lasts) for k, c in self._heard.items()})
         out.wheels = self._wheels(t)
+        out.joints = self._mover.command(t, 1.0 / self.hz, bool(self._obstacle))
         self._report(t, position, out)
         if self._reboots:
             self._reboot()
@@ -177,6 +189,18 @@ class GroundAutopilot(Service):
         if not reason:
             self._rally, self._rally_is_new = rally, True
         return Reply(accepted=not reason, reason=reason)
+
+    def _move_joints(self, t: float, request: MoveJointsRequest, measured: JointStates | None) -> Reply:
+        reason = self._obstacle or self._mover.ask(request, measured)
+        if not reason:
+            told = ", ".join(f"{joint.name} to {joint.position:g}" for joint in request.joints)
+            self._tell(t, told, f"asked by {request.source or 'unknown'}")
+        return Reply(accepted=not reason, reason=reason)
+
+    @property
+    def _obstacle(self) -> str:
+        """Why nothing of it moves now; "" when it may."""
+        return f"STOP ALL is engaged by {self._stop.who}" if self._stop else "" if self._armed else "disarmed"
 
     def _handle_stop_all(self, t: float, stop: StopStatus) -> None:
         before, self._stop = self._stop, stop
@@ -238,9 +262,9 @@ class GroundAutopilot(Service):
     def _reboot(self) -> None:
         """As after power has been off, with mission, fence and rally points of now."""
         rally = self._rally
-        body, home, system_id, looks = self._made_with
+        body, home, system_id, looks, joints = self._made_with
         job = (False, False, list(self._engine.mission.items))
-        vars(self).update(vars(GroundAutopilot(body, home, job, system_id, self.params, self._safety.fence, looks)))
+        vars(self).update(vars(GroundAutopilot(body, home, job, system_id, self.params, self._safety.fence, looks, joints)))
         self._set_rally(rally)
 
     def _follow_mission(self, t: float, position: Point | None) -> None:
@@ -251,8 +275,7 @@ class GroundAutopilot(Service):
             self._tell(t, f"mission item {reached} reached", "within its acceptance radius")
 
     def _choose(self, t: float, commands: Mapping[str, VelocityCommand]) -> None:
-        lacking = self._safety.obstacle(self._mode) if self._armed else "disarmed"
-        obstacle = f"STOP ALL is engaged by {self._stop.who}" if self._stop else lacking
+        obstacle = self._obstacle or self._safety.obstacle(self._mode)
         before, self._choice = self._choice, choose(t, self._mode, commands, obstacle, self._choice.source)
         hand_over = f"{before.source} {self._choice.source}" if before.source and self._choice.source else ""
         if before.source != self._choice.source and not (hand_over and not self._once.is_new(t, hand_over)):

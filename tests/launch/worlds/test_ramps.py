@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from services.sim_ground.world import BodyPlacement, BulletWorld
+from services.sim_ground.loading import BodyPlacement
+from services.sim_ground.world import BulletWorld
 from uvf.maths.kinematics import Twist
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import load_vehicle

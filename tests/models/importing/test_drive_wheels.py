@@ -2,7 +2,7 @@
 
 import pytest
 
-from uvf.models.importing.drive_wheels import LEFT, RIGHT
+from uvf.models.importing.driving.drive_wheels import LEFT, RIGHT
 
 
 @pytest.mark.parametrize("name", ["wheel_left_link", "left_wheel_joint", "lwheel", "wheelL", "driveL_joint", "wheel_l", "motor-l"])

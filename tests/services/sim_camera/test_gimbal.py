@@ -173,7 +173,7 @@ def test_the_chase_camera_sees_its_own_aircraft(tmp_path):
     chase = next(fitted for fitted in service._cameras if fitted.output == "chase")
     alone = [stepped(service, t, truth={"survey": truth}, **NOTHING_TOLD)["chase"].get("survey") for t in (0.2, 0.4)][-1]
     assert isinstance(alone, CompressedImage)
-    seen = service._renderer.take(*chase.looking(_pose(truth))).picture[60:130, 60:180]
+    seen = service._renderer.take(*chase.looking(_pose(truth), {})).picture[60:130, 60:180]
     service.close()
     orange = ((seen[:, :, 0] > 150) & (seen[:, :, 2] < 0.5 * seen[:, :, 0])).sum()
     assert orange > 50  # its wing

@@ -26,7 +26,7 @@ from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import seconds, stamp, vector
 from uvf.runtime.time.lockstep import Lockstep
 
-NOTHING_TOLD = {"objects": None, "aircraft": None, "gimbals": {}}
+NOTHING_TOLD = {"joints": {}, "objects": None, "aircraft": None, "gimbals": {}}
 
 CAMERA = Camera(mount=Mount(), hz=5.0, width=32, height=24, fov=1.2)
 SLOW = msgspec.structs.replace(CAMERA, hz=2.5)
@@ -40,6 +40,9 @@ class GreyRenderer:
 
     def place(self, t, poses):
         self.placed.update(poses)
+
+    def turn(self, positions):
+        self.turned = positions
 
     def show(self, guests):
         self.guests = guests

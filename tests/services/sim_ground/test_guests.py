@@ -9,7 +9,8 @@ from schemas.messages import Contact, LaserScan, NavState
 from services.sim_air.build import build as build_air
 from services.sim_ground.build import build
 from services.sim_ground.guest import Course
-from services.sim_ground.world import BodyPlacement, BulletWorld
+from services.sim_ground.loading import BodyPlacement
+from services.sim_ground.world import BulletWorld
 from tests.services.sim_ground.ride import Driver
 from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import IDENTITY

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from benchmarks.sim.ground.kinematics import drive, drives, figures, ground_vehicles
-from services.sim_ground.world import BodyPlacement, BulletWorld
+from services.sim_ground.loading import BodyPlacement
+from services.sim_ground.world import BulletWorld
 from uvf.control.drive_limits import DriveLimits, VelocityRamp
 from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import matrix

@@ -19,7 +19,17 @@ from uvf.models.world.geometry import solids
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.sensors.surroundings import Surroundings, vehicle_tree
 
-IDLE = {"commands": {}, "flying": None, "truth": {}, "spawn": [], "remove": [], "set_pose": [], "save": [], "restore": []}
+IDLE = {
+    "commands": {},
+    "joint_commands": {},
+    "flying": None,
+    "truth": {},
+    "spawn": [],
+    "remove": [],
+    "set_pose": [],
+    "save": [],
+    "restore": [],
+}
 
 
 class StandingWorld:
@@ -35,7 +45,7 @@ class StandingWorld:
     def motor_energy(self, vehicle):
         return 0.0
 
-    def advance(self, wheels, duration, since, steering):
+    def advance(self, wheels, duration, since, steering, joints):
         self.told.append((dict(wheels), duration, since))
 
     def state(self, vehicle):

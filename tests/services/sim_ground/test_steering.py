@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from launch.vehicles.trial_drive import drive
+from services.sim_ground.loading import BodyPlacement
 from services.sim_ground.steering import SteeringGear
-from services.sim_ground.world import BodyPlacement, BulletWorld
+from services.sim_ground.world import BulletWorld
 from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import to_euler
 from uvf.maths.wheels.steered import wheel_steering

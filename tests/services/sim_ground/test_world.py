@@ -8,7 +8,8 @@ import numpy as np
 import pybullet
 import pytest
 
-from services.sim_ground.world import BodyPlacement, BulletWorld
+from services.sim_ground.loading import BodyPlacement
+from services.sim_ground.world import BulletWorld
 from uvf.maths.kinematics import Twist, WheelSpeeds
 from uvf.maths.rotations import from_euler, matrix, multiply, rotate, to_euler
 from uvf.models.scenario import ROOT

@@ -1,25 +1,52 @@
 """How ground vehicles look: the meshes of their URDF, in the body frame (FLU), m."""
 
+from collections.abc import Collection
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from uvf.maths.se3 import compose, inverse
 from uvf.models.shapes.mesh import placed, triangles
 from uvf.models.shapes.mesh_parts import Colour, MeshPart, plate
 from uvf.models.urdf.model import load_urdf
+from uvf.models.urdf.robot import UrdfModel
+
+Floats = NDArray[np.float64]
+
+
+FAST = ""
+"""Stands for the body among the names of links that move."""
 
 
 def rover(urdf: Path) -> list[MeshPart]:
-    """The visual parts of the URDF, wheels at rest, with a forward arrow in the vehicle's own colour above. Raises BadInput."""
-    model = load_urdf(urdf)
-    poses = model.link_poses()
-    shown = [placed(solid, poses[link.name]) for link in model.links.values() for solid in link.visuals or link.collisions]
-    parts = [MeshPart(*triangles(solid), rgb(solid.colour)) for solid in shown]
-    points = np.vstack([part.vertices for part in parts])
+    """The visual parts of the URDF at rest, with a forward arrow in the vehicle's own colour above. Raises BadInput."""
+    return [part for parts in rover_parts(load_urdf(urdf), ()).values() for part in parts]
+
+
+def rover_parts(model: UrdfModel, moving: Collection[str]) -> dict[str, list[MeshPart]]:
+    """The same by the links of these names that carry them, each in that link's frame, and under ``FAST`` what none of them carries."""
+    poses, parents = model.link_poses(), model.parents
+    found: dict[str, list[MeshPart]] = {FAST: [], **{name: [] for name in moving}}
+    at_rest = []
+    for link in model.links.values():
+        carrier = link.name
+        while carrier not in moving and carrier in parents:
+            carrier = parents[carrier].parent
+        carrier = carrier if carrier in moving else FAST
+        there = poses[link.name] if carrier == FAST else compose(inverse(poses[carrier]), poses[link.name])
+        for solid in link.visuals or link.collisions:
+            found[carrier].append(MeshPart(*triangles(placed(solid, there)), rgb(solid.colour)))
+            at_rest.append(triangles(placed(solid, poses[link.name]))[0])
+    found[FAST].append(_arrow(np.vstack(at_rest)))
+    return found
+
+
+def _arrow(points: Floats) -> MeshPart:
+    """Above all points (n, 3) [m] of a vehicle."""
     (x, y, _), top = (points.max(axis=0) + points.min(axis=0)) / 2, float(points[:, 2].max())
     size = 0.25 * float(np.ptp(points[:, :2], axis=0).min())
-    parts.append(plate([(x + size, y, top + 0.02), (x - size, y + size / 2, top + 0.02), (x - size, y - size / 2, top + 0.02)], 0.006))
-    return parts
+    return plate([(x + size, y, top + 0.02), (x - size, y + size / 2, top + 0.02), (x - size, y - size / 2, top + 0.02)], 0.006)
 
 
 def rgb(colour: tuple[float, float, float]) -> Colour:

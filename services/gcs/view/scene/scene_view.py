@@ -11,6 +11,7 @@ from services.gcs.view.drawing import Colour, Node
 from services.gcs.view.scene import bodies
 from services.gcs.view.scene.estimate_layers import EstimateLayers
 from services.gcs.view.scene.map_layers import MapLayers
+from services.gcs.view.scene.moving_links import MovingLinks
 from services.gcs.view.scene.moving_parts import MovingParts
 from services.gcs.view.scene.node_cache import NodeCache
 from services.gcs.view.scene.scenery import coloured, moving, places_of, rgb_of, scenery
@@ -18,6 +19,7 @@ from services.gcs.view.scene.spawned import Spawned
 from services.gcs.view.scene.way_layers import WayLayers
 from uvf.models.aircraft.shape import AircraftShape, aircraft_shape
 from uvf.models.shapes.mesh_parts import MeshPart
+from uvf.models.urdf.model import load_urdf
 
 Floats = NDArray[np.float64]
 
@@ -38,7 +40,7 @@ class SceneView:
         self._scripted = moving(model.site.world)
         self._bodies: dict[str, dict[str, Node]] = {}
         self._ghosts: dict[str, dict[str, Node]] = {}
-        self._moving: dict[str, MovingParts] = {}
+        self._moving: dict[str, MovingParts | MovingLinks] = {}
         self._learn()
         self._spawned = Spawned(model)
 
@@ -49,10 +51,8 @@ class SceneView:
                 known.pop(name, None)
         for v in [v for v in self._model.vehicles.values() if v.name not in self._bodies]:
             shape = _shape(v) if v.flies else None
-            self._bodies[v.name] = _body(v, shape)
+            self._bodies[v.name], self._moving[v.name] = _body(v, shape)
             self._ghosts[v.name] = coloured(_parts(v, shape), GHOST, v.name)
-            if shape is not None:
-                self._moving[v.name] = MovingParts(shape.movables)
 
     def nodes(self, t: float) -> dict[str, Node]:
         """All scene nodes at ``t`` [s, wall], by name; ``/vehicles/<v>/...`` is given in that vehicle's frame."""
@@ -73,9 +73,9 @@ class SceneView:
         for v in self._model.vehicles.values():
             if v.place is not None:
                 placed[f"/vehicles/{v.name}"] = v.place
+                moving = self._moving[v.name].places(v.joints)
+                placed |= {f"/vehicles/{v.name}/{part}": place for part, place in moving.items()}
                 if v.flies:
-                    moving = self._moving[v.name].places(v.joints)
-                    placed |= {f"/vehicles/{v.name}/{part}": place for part, place in moving.items()}
                     placed[f"/height/{v.name}"] = DisplayPose(v.place.position, LEVEL)
                 placed |= {f"/frame/{v.name}/body": v.place} if "Frames" in layers else {}
                 placed |= {f"/sigma/{v.name}": DisplayPose(v.place.position, LEVEL)} if "Uncertainty" in layers else {}
@@ -100,16 +100,20 @@ def _shape(v: VehicleModel) -> AircraftShape:
     return shape.scaled(min(max(SHOWN_SIZE / size, 1.0), MOST_SCALE))
 
 
-def _body(v: VehicleModel, shape: AircraftShape | None) -> dict[str, Node]:
-    """An aircraft's movable parts are drawn in frames of their own, which turn."""
-    colour = rgb_of(v.colour)
+def _body(v: VehicleModel, shape: AircraftShape | None) -> tuple[dict[str, Node], MovingParts | MovingLinks]:
+    """Its nodes, and what moves them: surfaces, and what is steered or moved by other joints, are drawn in frames of their own."""
+    moves: MovingParts | MovingLinks
     if shape is None:
-        return coloured(_parts(v, None), colour, v.name)
-    found = coloured(shape.fixed + shape.undercarriage, colour, v.name)
-    for part in shape.movables:
-        drawn = coloured(part.parts, colour, v.name)
-        found |= {f"{part.name}/{i}": node for i, node in drawn.items()}
-    return found
+        body = v.member.file.ground
+        assert body is not None
+        model = load_urdf(v.member.folder / body.urdf)
+        moves = MovingLinks(model, [name for name in body.turning_joints if name not in body.drive.joints])
+        parts = bodies.rover_parts(model, moves.places(None))
+    else:
+        moves = MovingParts(shape.movables)
+        parts = {bodies.FAST: shape.fixed + shape.undercarriage, **{part.name: part.parts for part in shape.movables}}
+    drawn = {name: coloured(group, rgb_of(v.colour), v.name) for name, group in parts.items()}
+    return {f"{name}/{i}".lstrip("/"): node for name, nodes in drawn.items() for i, node in nodes.items()}, moves
 
 
 def _parts(v: VehicleModel, shape: AircraftShape | None) -> list[MeshPart]:

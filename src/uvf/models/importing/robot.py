@@ -1,6 +1,6 @@
 """A robot as somebody else described it, whatever the format: body, what drives it, what it senses."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import inf
 from typing import Any
@@ -8,6 +8,7 @@ from typing import Any
 from uvf.maths.se3 import IDENTITY, Transform
 from uvf.models.importing.notes import Notes
 from uvf.models.urdf.robot import UrdfModel
+from uvf.models.yaml_data import BadInput, nearest
 
 UNKNOWN = "kinds of joint that are not simulated, held fast"
 
@@ -76,12 +77,23 @@ class ImportedDrive:
 
 @dataclass
 class Foreign:
-    """An imported robot before it is rebuilt: body, drive, sensors, and the notes of the import."""
+    """An imported robot before it is rebuilt: body, drive, sensors, and the notes of the import.
+
+    commanded: the joints that its makers move to a place.
+    """
 
     model: UrdfModel
     drive: ImportedDrive = ImportedDrive()
     sensors: list[ForeignSensor] = field(default_factory=list)
+    commanded: set[str] = field(default_factory=set)
     notes: Notes = field(default_factory=Notes)
+
+    def command(self, joints: Iterable[str]) -> None:
+        """Has these joints moved on command, too. Raises BadInput for one that is not there."""
+        for name in joints:
+            if name not in self.model.joints:
+                raise BadInput(f"{self.model.path}: no joint '{name}'; {nearest(name, self.model.joints)}")
+            self.commanded.add(name)
 
     def take_plugins(self, element: Any) -> None:
         """Takes over the first drive among the plugins below an element; all other plugins are dropped with a note."""

@@ -1,6 +1,6 @@
 """Sensors of others as the ``sensors:`` section of a vehicle.yaml."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from typing import Any
 
 import numpy as np
@@ -33,8 +33,11 @@ FIGURES = ("samples", "resolution", "min_angle", "max_angle", "min", "max", "std
 LINK_KINDS = {"lidar": "ray", "imu": "imu", "camera": "camera"}
 
 
-def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> Section:
-    """The ``sensors`` section of a vehicle file: what the robot carries, what its links' names tell of, and encoders, which all have."""
+def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform], moving: Collection[str]) -> Section:
+    """The ``sensors`` section of a vehicle file: what the robot carries, what its links' names tell of, and encoders, which all have.
+
+    moving: links that are moved on command: cameras without depth go with them.
+    """
     section: Section = {}
     for sensor in sorted((*foreign.sensors, *_by_names(foreign)), key=lambda each: _rank(each, base_from_link)):
         _tell_odd(sensor, foreign)
@@ -60,7 +63,12 @@ def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> S
         elif kind in section:
             foreign.notes.add(f"a vehicle has one {kind}; the others dropped", sensor.link)
         else:
-            section[kind] = {"preset": "good"} if kind == "gnss" else {"mount": mount, **make(sensor, foreign), "frame": frame}
+            made = make(sensor, foreign)
+            if sensor.link in moving and kind == "camera" and not made.get("depth"):
+                mount = {"link": sensor.link, **_mount(sensor.link_from_sensor)}
+            elif sensor.link in moving:
+                foreign.notes.add("sensors on links that are moved on command stay where they are at zero", sensor.link)
+            section[kind] = {"preset": "good"} if kind == "gnss" else {"mount": mount, **made, "frame": frame}
     foreign.notes.add("guessed: wheel encoders of 4096 ticks a turn at 50 Hz")
     section["encoders"] = {"hz": 50.0, "ticks_per_turn": 4096}
     return section

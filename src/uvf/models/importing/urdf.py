@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from uvf.models.importing.moved_joints import commanded_joints
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.robot import Foreign, ForeignSensor
 from uvf.models.importing.sdf.poses import FILE, transform
@@ -27,7 +28,7 @@ def read_foreign_urdf(path: Path, values: XacroValues) -> Foreign:
         if "no mesh file" not in fault.text:
             notes.add(f"faulty in the file: {fault}")
     _tell_structure(path, model, notes)
-    found = Foreign(model, notes=notes)
+    found = Foreign(model, notes=notes, commanded=commanded_joints(robot))
     robot.set(FILE, str(path))
     for tag in robot.findall("transmission"):
         notes.add("transmissions dropped, UVF's motor model drives the wheels", tag.get("name", ""))

@@ -163,6 +163,7 @@ class _Reader:
         parent, child = (tag.find(end).get("link", "") if tag.find(end) is not None else "" for end in ("parent", "child"))
         limit, mimic = tag.find("limit"), tag.find("mimic")
         low, high = (float(self._row(limit, end, 1, (0.0,))[0]) for end in ("lower", "upper"))
+        speed, effort = (_strength(limit, of) for of in ("velocity", "effort"))
         damping, friction = (float(self._row(tag.find("dynamics"), of, 1, (0.0,))[0]) for of in ("damping", "friction"))
         return Joint(
             name,
@@ -175,6 +176,8 @@ class _Reader:
             mimic.get("joint") if mimic is not None else None,
             damping,
             friction,
+            speed,
+            effort,
             _place(tag)[1],
         )
 
@@ -186,6 +189,12 @@ def numbers(text: str) -> list[float]:
     except ValueError:
         return []
     return values if all(map(math.isfinite, values)) else []
+
+
+def _strength(limit: Any, of: str) -> float:
+    """0 where it is not told: whoever needs it says so."""
+    told = numbers(limit.get(of) or "") if limit is not None else []
+    return max(told[0], 0.0) if len(told) == 1 else 0.0
 
 
 def _place(tag: Any) -> tuple[str, int]:

@@ -1,6 +1,6 @@
 """A vehicle's body as links and joints, whatever file it was read from."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -56,7 +56,7 @@ class Link:
 class Joint:
     """A joint. parent_from_child: at rest; axis: (3,) unit vector in the child's frame; limits: lower and upper [rad or m], None = none.
 
-    damping [N m s/rad], friction [N m] of the bearing.
+    damping [N m s/rad], friction [N m] of the bearing; speed [rad/s or m/s] and effort [N m or N] of what moves it, 0 = not given.
     """
 
     name: str
@@ -69,6 +69,8 @@ class Joint:
     mimics: str | None = None
     damping: float = 0.0
     friction: float = 0.0
+    speed: float = 0.0
+    effort: float = 0.0
     line: int = 0
 
     def at(self, value: float) -> Transform:
@@ -119,6 +121,10 @@ class UrdfModel:
         for name in found:  # grows
             yield name
             found += [j.child for j in self.joints.values() if j.parent == name and j.child not in found]
+
+    def carried_by(self, joints: Collection[str]) -> set[str]:
+        """The links that these joints move."""
+        return {link for name in joints if name in self.joints for link in self.below(self.joints[name].child)}
 
     def rigid_with(self, link: str) -> set[str]:
         """The links that move as one body with this one."""

@@ -12,6 +12,7 @@ from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.robot import Inertial, Joint, Link, UrdfModel
 
 NameMesh = Callable[[Path], str]
+EFFORT, SPEED = 100.0, 10.0  # of a joint of which nothing is told: the format wants something there
 
 
 def urdf_text(model: UrdfModel, name_mesh: NameMesh, comment: str = "") -> str:
@@ -72,8 +73,10 @@ def _joint(joint: Joint) -> Any:
     if joint.kind != "fixed":
         etree.SubElement(tag, "axis", xyz=_row(joint.axis))
         etree.SubElement(tag, "dynamics", damping=_row((joint.damping,)), friction=_row((joint.friction,)))
-    if joint.limits is not None:
-        etree.SubElement(tag, "limit", lower=_row(joint.limits[:1]), upper=_row(joint.limits[1:]), effort="100", velocity="10")
+    if joint.limits is not None or joint.speed or joint.effort:
+        strength = {"effort": _row((joint.effort or EFFORT,)), "velocity": _row((joint.speed or SPEED,))}
+        ends = {} if joint.limits is None else {"lower": _row(joint.limits[:1]), "upper": _row(joint.limits[1:])}
+        etree.SubElement(tag, "limit", ends | strength)
     return tag
 
 

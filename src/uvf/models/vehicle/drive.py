@@ -14,7 +14,7 @@ from uvf.models.quantities import Angle, Positive
 from uvf.models.yaml_data import BadInput, FileLocation
 
 KIND, DEFAULT = "kind", "differential"
-Joint = Annotated[str, Meta(min_length=1, max_length=80)]
+JointName = Annotated[str, Meta(min_length=1, max_length=80)]
 Coordinate = Annotated[float, Meta(ge=-1e3, le=1e3)]
 Steering = Annotated[float, Meta(gt=0.01, lt=1.5)]
 
@@ -83,8 +83,8 @@ class DriveFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_fie
 class OneAxle(DriveFile, frozen=True):
     """One driven wheel on each side."""
 
-    left: Annotated[Joint, plain("Joint of the left wheel in the URDF.")]
-    right: Annotated[Joint, plain("Joint of the right wheel in the URDF.")]
+    left: Annotated[JointName, plain("Joint of the left wheel in the URDF.")]
+    right: Annotated[JointName, plain("Joint of the right wheel in the URDF.")]
     track: Annotated[Positive, key("m", "Distance between the wheels' contact points; within 3 % of the URDF's.")]
 
     @property
@@ -119,7 +119,7 @@ class AckermannFile(OneAxle, frozen=True, tag="ackermann"):
         Positive, key("m", "Distance from the straight axle to the contact points of the steered wheels; within 3 % of the URDF's.")
     ]
     steered: Annotated[
-        dict[Joint, Joint],
+        dict[JointName, JointName],
         plain("The steered wheels by their joints in the URDF: the joint that steers, upright, and that on which the wheel turns."),
     ]
     max_steering: Annotated[Steering, key("rad", "Largest steering, of a wheel in the middle between the steered ones.")]
@@ -139,8 +139,8 @@ class AckermannFile(OneAxle, frozen=True, tag="ackermann"):
 class SeveralWheels(DriveFile, frozen=True):
     """Several wheels on each side, none of which can be steered."""
 
-    left: Annotated[list[Joint], plain("Joints of all left wheels in the URDF, from the front.")]
-    right: Annotated[list[Joint], plain("Joints of all right wheels in the URDF, from the front.")]
+    left: Annotated[list[JointName], plain("Joints of all left wheels in the URDF, from the front.")]
+    right: Annotated[list[JointName], plain("Joints of all right wheels in the URDF, from the front.")]
     track: Annotated[Positive, key("m", "Distance between the contact points of left and right wheels; within 3 % of the URDF's.")]
 
     @property

@@ -9,7 +9,8 @@ from uvf.maths.kinematics import Twist
 from uvf.models.keys import key, plain
 from uvf.models.quantities import Name, NotNegative, PhysicsRate, Positive
 from uvf.models.vehicle.air import AirBody, BatteryPack, check_air, check_battery
-from uvf.models.vehicle.drive import AnyDrive, check_drive
+from uvf.models.vehicle.drive import AnyDrive, JointName, check_drive
+from uvf.models.vehicle.joints import Spring, check_joints
 from uvf.models.vehicle.layers import file_of, fill_vehicle, folders_of
 from uvf.models.vehicle.sensors import Sensors, check_sensors, check_sensors_of_aircraft
 from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
@@ -46,7 +47,20 @@ class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     motor: Annotated[Motor, plain("Motors of the driven wheels.")]
     friction: Annotated[Friction, plain("Friction on the ground.")] = Friction()
     battery: Annotated[BatteryPack | None, plain("Battery; left out: the vehicle has none and never runs empty.")] = None
+    joints: Annotated[
+        list[JointName],
+        plain("Joints of the URDF that are moved on command: lift, pan, arm. Their `<limit>` gives range, `velocity` and `effort`."),
+    ] = []
+    springs: Annotated[
+        dict[JointName, Spring],
+        plain("Joints that give way on springs, by their names in the URDF. Joints named nowhere are held fast at zero."),
+    ] = {}
     physics_hz: Annotated[PhysicsRate, key("Hz", "Physics steps per second of simulation time.")] = 200.0
+
+    @property
+    def turning_joints(self) -> tuple[str, ...]:
+        """All whose positions are measured: of driven wheels, of the steering, of what is moved on command or on springs."""
+        return (*self.drive.joints, *self.drive.steered_wheels, *self.joints, *self.springs)
 
     @property
     def max_twist(self) -> Twist:
@@ -93,6 +107,7 @@ def load_vehicle(vehicles: str | Path, name: str, named_at: FileLocation | None 
     ground, air = vehicle.ground, vehicle.air
     if ground is not None:
         check_drive(ground.drive, place.at("ground", "drive"))
+        check_joints(ground.joints, ground.springs, (*ground.drive.all_wheels, *ground.drive.steered_wheels), place.at("ground"))
     if ground is not None and ground.battery is not None:
         _check_ground_battery(ground.battery, place.at("ground", "battery"))
     if air is not None:

@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from schemas.messages import FrameTransform, FrameTransforms, JointStates
+from uvf.maths.se3 import inverse
 from uvf.models.urdf.model import read_urdf
 from uvf.models.urdf.robot import Joint, UrdfModel
 from uvf.models.vehicle.sensors import Sensors
@@ -22,13 +23,15 @@ class Links:
 
     def __init__(self, urdf: Path, turning: Sequence[str]) -> None:
         """urdf: one that ``check_urdf`` lets pass; turning: the joints whose angles are measured."""
-        joints = [*_joints(read_urdf(urdf))]
+        model = read_urdf(urdf)
+        joints, poses = [*_joints(model)], model.link_poses()
+        self._carriers = {link: inverse(poses[link]) for link in model.carried_by(turning)}
         self._turning = {j.name: j for j in joints if j.name in turning}
         self._resting = [j for j in joints if j.name not in turning]
 
     def resting(self, vehicle: str, sensors: Sensors, t: float) -> FrameTransforms:
         """Transforms at ``t`` [s] of the links that do not move, and of the sensors; a sensor's mount holds before a link of its name."""
-        mounted = sensor_frames(vehicle, sensors, t).transforms
+        mounted = sensor_frames(vehicle, sensors, t, self._carriers).transforms
         names = {frame.child_frame_id for frame in mounted}
         links = [frame for joint in self._resting if (frame := _frame(joint, vehicle, t)).child_frame_id not in names]
         return FrameTransforms(transforms=[*links, *mounted])

@@ -44,7 +44,7 @@ BODY = GroundBody(
 )
 WAYPOINTS = [MissionItem(position=Vector3(x=1.0)), MissionItem(position=Vector3(x=2.0))]
 NOBODY = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "executive", "offboard", "planner", "pose", "link"))
-NOBODY |= {"stop": StopStatus(), "imu": [], "ticks": None, "scan": None, "correction": None, "battery": None}
+NOBODY |= {"stop": StopStatus(), "imu": [], "ticks": None, "scan": None, "joints": None, "correction": None, "battery": None}
 NOTHING_ASKED = {name: [] for name in GroundAutopilot.requests}
 
 

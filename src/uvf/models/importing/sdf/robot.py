@@ -9,6 +9,7 @@ import numpy as np
 from uvf.maths.rotations import inverse as unturned
 from uvf.maths.rotations import matrix, rotate
 from uvf.maths.se3 import IDENTITY, Transform, compose, inverse
+from uvf.models.importing.moved_joints import commanded_joints
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.robot import UNKNOWN, Foreign, ForeignSensor, drive_of
 from uvf.models.importing.sdf.colours import visual_colour
@@ -63,7 +64,7 @@ class _Reader:
         links = {name: self._link(name, tag, inverse(turned.get(name, IDENTITY))) for name, tag in tags.items()}
         read = {j.get("name", "?"): self._joint(j, scope, frames) for j in joints}
         body = UrdfModel(self._path, model.get("name", "robot"), links, self._tied(links, read, frames))
-        found = Foreign(body, notes=self._notes)
+        found = Foreign(body, notes=self._notes, commanded=commanded_joints(model))
         found.take_plugins(model)
         for name, tag in tags.items():
             for sensor in tag.findall("sensor"):
@@ -132,6 +133,8 @@ class _Reader:
             compose(inverse(frames[parent]), frames[child]),
             self._axis(axis, scope, frames[child]),
             None if free or low is None or high is None else (low, high),
+            speed=max(_limit(limit, "velocity") or 0.0, 0.0),
+            effort=max(_limit(limit, "effort") or 0.0, 0.0),
             line=tag.sourceline or 0,
         )
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.models.importing.wheel_guess import WheelGuess
+from uvf.models.importing.driving.wheel_guess import WheelGuess
 
 Floats = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.models.importing.driving.wheel_guess import Pair, WheelGuess, shapes_below
 from uvf.models.importing.robot import Foreign
-from uvf.models.importing.wheel_guess import Pair, WheelGuess, shapes_below
 from uvf.models.shapes.mesh import reach
 
 Floats = NDArray[np.float64]

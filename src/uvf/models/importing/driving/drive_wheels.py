@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from uvf.maths.rotations import from_matrix, rotate
 from uvf.maths.se3 import IDENTITY, Transform, apply, inverse
 from uvf.maths.wheels.scrubbing import Scrubbing, scrubbing, shared_loads
-from uvf.models.importing.omni_wheels import meeting_point, ring_of
+from uvf.models.importing.driving.omni_wheels import meeting_point, ring_of
+from uvf.models.importing.driving.steered_wheels import UPRIGHT, car_of, steering_of, with_rolling_wheels
+from uvf.models.importing.driving.wheel_guess import CASTORS, Pair, WheelGuess, loosened_wheels, may_turn, wheel_on
+from uvf.models.importing.driving.which_way import LEFT, RIGHT, left_is_first, names_of, row, up_of
 from uvf.models.importing.robot import Foreign
-from uvf.models.importing.steered_wheels import UPRIGHT, car_of, steering_of, with_rolling_wheels
-from uvf.models.importing.wheel_guess import CASTORS, Pair, WheelGuess, loosened_wheels, may_turn, wheel_on
-from uvf.models.importing.which_way import LEFT, RIGHT, left_is_first, names_of, row, up_of
 from uvf.models.urdf.inertia import whole
 from uvf.models.urdf.robot import Joint, UrdfModel
 from uvf.models.yaml_data import BadInput

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.rotations import rotate
+from uvf.models.importing.driving.wheel_guess import CASTORS, WHEEL, Pair, WheelGuess, wheel_on
 from uvf.models.importing.robot import Foreign
-from uvf.models.importing.wheel_guess import CASTORS, WHEEL, Pair, WheelGuess, wheel_on
 from uvf.models.urdf.robot import Joint, Link, UrdfModel
 
 Floats = NDArray[np.float64]
