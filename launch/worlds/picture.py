@@ -18,10 +18,11 @@ from uvf.maths.rotations import from_matrix
 from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.scene import primitives
 from uvf.models.shapes.solid import Solid, pose_at
+from uvf.models.shapes.textured import textured, write_textured
 from uvf.models.vehicle.sensors import Camera, Mount
-from uvf.models.world.cutaway import CUT, cut_height, cut_open
+from uvf.models.world.cutaway import CUT, cut_height, cut_open, cut_open_textured
 from uvf.models.world.file import WorldFile
-from uvf.models.world.geometry import FloorPlan, solids, things
+from uvf.models.world.geometry import FloorPlan, hills, seen, things
 from uvf.models.world.terrain import relief
 
 Floats = NDArray[np.float64]
@@ -90,7 +91,7 @@ def view(world: WorldFile) -> NDArray[np.uint8]:
     """RGB image (height, width, 3) from the south-east and above, tall things cut, moving ones at the start of their scripts."""
     camera = Camera(Mount((0.0, 0.0, 0.0)), hz=1.0, width=WIDTH, height=HEIGHT, fov=LENS, far=2000.0)
     with TemporaryDirectory() as scratch:
-        placed = [_at_start(solid) for solid in _cut(solids(world), world, Path(scratch))]
+        placed = [_at_start(solid) for solid in _cut([*seen(world), *hills(world)], world, Path(scratch))]
         renderer = BulletRenderer(world, placed, {})
         try:
             picture = renderer.take(camera, _standpoint(world)).picture
@@ -119,11 +120,18 @@ def _cut_one(solid: Solid, under_a_roof: bool, scratch: Path) -> Solid | None:
     if solid.shape == "box" and is_upright and low[2] < CUT:
         middle = np.array((*solid.position[:2], (low[2] + CUT) / 2))
         return replace(solid, size=(*solid.size[:2], float(CUT - low[2])), position=middle)
-    vertices, faces = cut_open(*triangles(solid), CUT)
+    file = scratch / f"{len(list(scratch.iterdir()))}.stl"
+    if (mesh := textured(solid)) is not None:
+        below = cut_open_textured(mesh, CUT)
+        file, faces = file.with_suffix(".obj"), below.faces
+        if len(faces):
+            write_textured(below, file)
+    else:
+        vertices, faces = cut_open(*triangles(solid), CUT)
+        if len(faces):
+            trimesh.Trimesh(vertices, faces).export(file)
     if not len(faces):
         return None
-    file = scratch / f"{len(list(scratch.iterdir()))}.stl"
-    trimesh.Trimesh(vertices, faces).export(file)
     return Solid(solid.name, "mesh", (1.0, 1.0, 1.0), np.zeros(3), colour=solid.colour, mesh=file)
 
 

@@ -15,7 +15,7 @@ from uvf.models.urdf.model import engine_urdf, load_urdf
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.vehicle.sensors import Camera, Sensors
 from uvf.models.world.file import WorldFile
-from uvf.models.world.geometry import land, things
+from uvf.models.world.geometry import land, seen
 from uvf.models.world.terrain_picture import raised_mesh, with_ground_of
 from uvf.models.yaml_data import BadInput, FileLocation, nearest
 from uvf.runtime.contract.instances import ServiceInstance
@@ -64,7 +64,7 @@ def _carrier(member: MissionVehicle, camera: Camera) -> Carrier | None:
 def _rendered(world: WorldFile) -> list[Solid]:
     """What is rendered of a world, of its terrain what stands out of the ground."""
     raised = None if world.terrain is None else raised_mesh(world.terrain)
-    return things(world) if world.terrain is None or raised is None else [*things(world), land(world.terrain, raised)]
+    return seen(world) if world.terrain is None or raised is None else [*seen(world), land(world.terrain, raised)]
 
 
 def _cameras(sensors: Sensors) -> dict[str, Camera]:

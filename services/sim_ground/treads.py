@@ -1,7 +1,7 @@
 """The treads of wheels that scrub, are steered or have rollers, with friction of their own: the engine's is not for them."""
 
 from collections.abc import Sequence
-from math import cos, expm1, inf, sin
+from math import cos, expm1, hypot, inf, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -48,7 +48,7 @@ class Treads:
 
         contacts: the vehicle's; shares: of their grip that the left and the right wheels have now.
         """
-        touching = {c.link: c for c in sorted(contacts, key=lambda c: c.load) if c.load > 0.0}
+        touching = _by_wheel(contacts)
         n = len(self.wheels)
         slips, loads, frames, renewed = np.zeros((n, 2)), np.zeros(n), np.zeros((n, 2, 3)), np.zeros(n)
         root, body, turning = (np.array(v) for v in (rolling.body.position, rolling.body.velocity, rolling.body.angular_velocity))
@@ -63,3 +63,29 @@ class Treads:
             renewed[i] = -expm1(-abs(frames[i, 0] @ carried) * dt / self._contact)
         forces = tread_forces(self.deflections, slips, loads, np.array(shares)[self._side, None] * self._grip, renewed, dt)
         return [(wheel, forces[i] @ frames[i], touching[wheel].place) for i, wheel in enumerate(self.wheels) if wheel in touching]
+
+
+def _by_wheel(contacts: Sequence[EngineContact]) -> dict[int, EngineContact]:
+    """One contact for each link that bears: the engine keeps several of one wheel that rolls, and shares its load among them."""
+    found: dict[int, EngineContact] = {}
+    for contact in (c for c in contacts if c.load > 0.0):
+        if (other := found.get(contact.link)) is None:
+            found[contact.link] = contact
+            continue
+        load = other.load + contact.load
+        share = contact.load / load
+        place, normal = _mean(other.place, contact.place, share), _unit(_mean(other.normal, contact.normal, share))
+        found[contact.link] = contact._replace(place=place, normal=normal, load=load)
+    return found
+
+
+def _mean(one: Three, two: Three, share: float) -> Three:
+    """Between the two, by the share of the second."""
+    x, y, z = (a + (b - a) * share for a, b in zip(one, two, strict=True))
+    return x, y, z
+
+
+def _unit(vector: Three) -> Three:
+    x, y, z = vector
+    length = max(hypot(x, y, z), 1e-9)
+    return x / length, y / length, z / length

@@ -4,12 +4,13 @@ from collections.abc import Callable, Coroutine, Mapping
 from typing import Any
 
 import numpy as np
+import trimesh
 import viser
 from numpy.typing import NDArray
 from viser import _messages
 
 from services.gcs.state.vehicle_model import DisplayPose
-from services.gcs.view.drawing import Axes, Boxes, FloorPicture, MeshNode, Node, Points, Polyline, TextNode
+from services.gcs.view.drawing import Axes, Boxes, FloorPicture, MeshNode, Node, Points, Polyline, TextNode, TexturedNode
 
 Floats = NDArray[np.float64]
 
@@ -71,6 +72,8 @@ class ViserScene:
         match node:
             case MeshNode():
                 return self._add_mesh(name, node)
+            case TexturedNode():
+                return self._add_textured(name, node)
             case Polyline():
                 return scene.add_line_segments(name, segments(node.points), node.colour, thickness=node.width, thickness_units="screen")
             case Points():
@@ -101,6 +104,12 @@ class ViserScene:
         handle = self._server.scene.add_mesh_simple(
             name, _f32(node.vertices), node.faces.astype(np.uint32), color=node.colour, opacity=opacity, flat_shading=True, side="double"
         )
+        if node.selects:
+            handle.on_click(self._picking(node.selects))
+        return handle
+
+    def _add_textured(self, name: str, node: TexturedNode) -> Any:
+        handle = self._server.scene.add_mesh_trimesh(name, glb_mesh(node))
         if node.selects:
             handle.on_click(self._picking(node.selects))
         return handle
@@ -167,3 +176,10 @@ def segments(points: Floats) -> NDArray[np.float32]:
 
 def _f32(points: Floats) -> NDArray[np.float32]:
     return np.ascontiguousarray(points, dtype=np.float32)
+
+
+def glb_mesh(node: TexturedNode) -> trimesh.Trimesh:
+    """As it goes to a browser: dull, seen from both sides."""
+    made: Any = trimesh.visual
+    look = made.material.PBRMaterial(baseColorTexture=node.picture, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True)
+    return trimesh.Trimesh(node.vertices, node.faces, visual=made.TextureVisuals(uv=node.uv, material=look), process=False)

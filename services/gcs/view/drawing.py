@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,18 @@ class MeshNode:
     faces: NDArray[np.int64]
     colour: Colour
     opacity: float = 1.0
+    selects: str = ""
+    """A click on it selects this vehicle."""
+
+
+@dataclass(frozen=True, eq=False)
+class TexturedNode:
+    """A mesh under a picture. vertices: (n, 3) [m, parent's frame]; faces: (m, 3); uv: (n, 2), v up; picture: RGB, of PIL."""
+
+    vertices: Floats
+    faces: NDArray[np.int64]
+    uv: Floats
+    picture: Any
     selects: str = ""
     """A click on it selects this vehicle."""
 
@@ -82,7 +94,7 @@ class Boxes:
     colours: NDArray[np.uint8]
 
 
-Node = MeshNode | Polyline | Points | FloorPicture | TextNode | Axes | Boxes
+Node = MeshNode | TexturedNode | Polyline | Points | FloorPicture | TextNode | Axes | Boxes
 
 
 @dataclass(frozen=True)

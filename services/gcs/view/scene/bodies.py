@@ -1,6 +1,7 @@
 """How ground vehicles look: the meshes of their URDF, in the body frame (FLU), m."""
 
 from collections.abc import Collection
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from uvf.maths.se3 import compose, inverse
 from uvf.models.shapes.mesh import placed, triangles
 from uvf.models.shapes.mesh_parts import Colour, MeshPart, plate
+from uvf.models.shapes.textured import TexturedMesh, textured
 from uvf.models.urdf.model import load_urdf
 from uvf.models.urdf.robot import UrdfModel
 
@@ -21,13 +23,24 @@ FAST = ""
 
 def rover(urdf: Path) -> list[MeshPart]:
     """The visual parts of the URDF at rest, with a forward arrow in the vehicle's own colour above. Raises BadInput."""
-    return [part for parts in rover_parts(load_urdf(urdf), ()).values() for part in parts]
+    return [part for drawn in rover_parts(load_urdf(urdf), (), pictures=False).values() for part in drawn.plain]
 
 
-def rover_parts(model: UrdfModel, moving: Collection[str]) -> dict[str, list[MeshPart]]:
-    """The same by the links of these names that carry them, each in that link's frame, and under ``FAST`` what none of them carries."""
+@dataclass(frozen=True)
+class DrawnParts:
+    """What is drawn in one frame: parts of plain colours, and those under pictures."""
+
+    plain: list[MeshPart] = field(default_factory=list)
+    pictured: list[TexturedMesh] = field(default_factory=list)
+
+
+def rover_parts(model: UrdfModel, moving: Collection[str], pictures: bool = True) -> dict[str, DrawnParts]:
+    """The same by the links of these names that carry them, each in that link's frame, and under ``FAST`` what none of them carries.
+
+    pictures: what has one is drawn with it, else in its plain colour.
+    """
     poses, parents = model.link_poses(), model.parents
-    found: dict[str, list[MeshPart]] = {FAST: [], **{name: [] for name in moving}}
+    found = {name: DrawnParts() for name in (FAST, *moving)}
     at_rest = []
     for link in model.links.values():
         carrier = link.name
@@ -36,9 +49,13 @@ def rover_parts(model: UrdfModel, moving: Collection[str]) -> dict[str, list[Mes
         carrier = carrier if carrier in moving else FAST
         there = poses[link.name] if carrier == FAST else compose(inverse(poses[carrier]), poses[link.name])
         for solid in link.visuals or link.collisions:
-            found[carrier].append(MeshPart(*triangles(placed(solid, there)), rgb(solid.colour)))
+            here = placed(solid, there)
+            if pictures and (mesh := textured(here)) is not None:
+                found[carrier].pictured.append(mesh)
+            else:
+                found[carrier].plain.append(MeshPart(*triangles(here), rgb(solid.colour)))
             at_rest.append(triangles(placed(solid, poses[link.name]))[0])
-    found[FAST].append(_arrow(np.vstack(at_rest)))
+    found[FAST].plain.append(_arrow(np.vstack(at_rest)))
     return found
 
 

@@ -14,7 +14,7 @@ from services.gcs.view.scene.map_layers import MapLayers
 from services.gcs.view.scene.moving_links import MovingLinks
 from services.gcs.view.scene.moving_parts import MovingParts
 from services.gcs.view.scene.node_cache import NodeCache
-from services.gcs.view.scene.scenery import coloured, moving, places_of, rgb_of, scenery
+from services.gcs.view.scene.scenery import coloured, moving, places_of, rgb_of, scenery, textured_node
 from services.gcs.view.scene.spawned import Spawned
 from services.gcs.view.scene.way_layers import WayLayers
 from uvf.models.aircraft.shape import AircraftShape, aircraft_shape
@@ -111,9 +111,13 @@ def _body(v: VehicleModel, shape: AircraftShape | None) -> tuple[dict[str, Node]
         parts = bodies.rover_parts(model, moves.places(None))
     else:
         moves = MovingParts(shape.movables)
-        parts = {bodies.FAST: shape.fixed + shape.undercarriage, **{part.name: part.parts for part in shape.movables}}
-    drawn = {name: coloured(group, rgb_of(v.colour), v.name) for name, group in parts.items()}
-    return {f"{name}/{i}".lstrip("/"): node for name, nodes in drawn.items() for i, node in nodes.items()}, moves
+        groups = {bodies.FAST: shape.fixed + shape.undercarriage, **{part.name: part.parts for part in shape.movables}}
+        parts = {name: bodies.DrawnParts(group) for name, group in groups.items()}
+    drawn: dict[str, Node] = {}
+    for name, group in parts.items():
+        drawn |= {f"{name}/{i}".lstrip("/"): node for i, node in coloured(group.plain, rgb_of(v.colour), v.name).items()}
+        drawn |= {f"{name}/picture_{i}".lstrip("/"): textured_node([mesh], v.name) for i, mesh in enumerate(group.pictured)}
+    return drawn, moves
 
 
 def _parts(v: VehicleModel, shape: AircraftShape | None) -> list[MeshPart]:

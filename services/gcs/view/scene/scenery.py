@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from services.gcs.state.vehicle_model import DisplayPose
-from services.gcs.view.drawing import Colour, MeshNode, Node, Polyline
+from services.gcs.view.drawing import Colour, MeshNode, Node, Polyline, TexturedNode
 from services.gcs.view.scene.bodies import rgb
 from uvf.maths.rotations import IDENTITY, from_euler, matrix
 from uvf.models.mission.file import Waypoint
@@ -15,9 +16,10 @@ from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.mesh_parts import MeshPart, box, joined
 from uvf.models.shapes.solid import Solid, pose_at
-from uvf.models.world.cutaway import cut_height, cut_open
+from uvf.models.shapes.textured import TexturedMesh, textured
+from uvf.models.world.cutaway import cut_height, cut_open, cut_open_textured
 from uvf.models.world.file import Wall, WorldFile
-from uvf.models.world.geometry import WALL, solids
+from uvf.models.world.geometry import WALL, hills, seen, solids
 
 Floats = NDArray[np.float64]
 
@@ -32,10 +34,12 @@ def scenery(world: WorldFile) -> dict[str, Node]:
     nodes: dict[str, Node] = {"/world/floor": MeshNode(floor.vertices, floor.faces, FLOOR)}
     walls = [(wall.colour, part) for wall in world.walls for part in _segments(wall)]
     nodes.update(_merged("/world/walls", walls))
-    still = [s for s in solids(world) if s.name != WALL and s.path is None]
-    top = cut_height(world, still)
-    things = [(s.colour, part) for s in still if len((part := _placed(s, top)).faces)]
-    nodes.update(_merged("/world/things", things))
+    top = cut_height(world, [solid for solid in solids(world) if solid.path is None])
+    still = [s for s in (*seen(world), *hills(world)) if s.name != WALL and s.path is None]
+    pictures = [(solid, textured(solid)) for solid in still]
+    plain = [(s.colour, part) for s, mesh in pictures if mesh is None and len((part := _placed(s, top)).faces)]
+    nodes.update(_merged("/world/things", plain))
+    nodes.update(_pictured("/world/pictures", [(s.mesh, mesh) for s, mesh in pictures if mesh is not None], top))
     nodes.update((f"{_frame(s)}/shape", merge([at_rest(s)], rgb(s.colour))) for s in moving(world))
     return nodes
 
@@ -87,6 +91,24 @@ def _merged(name: str, parts: list[tuple[tuple[float, float, float], MeshPart]])
     for colour, part in parts:
         by_colour.setdefault(colour, []).append(part)
     return {f"{name}/{i}": merge(group, rgb(colour)) for i, (colour, group) in enumerate(sorted(by_colour.items()))}
+
+
+def _pictured(name: str, meshes: Sequence[tuple[Path | None, TexturedMesh]], top: float) -> dict[str, Node]:
+    """One mesh for each file, wherever it stands, up to a height [m]."""
+    by_file: dict[Path | None, list[TexturedMesh]] = {}
+    for file, mesh in meshes:
+        there = cut_open_textured(mesh, top) if mesh.vertices[:, 2].max() > top else mesh
+        if len(there.faces):
+            by_file.setdefault(file, []).append(there)
+    return {f"{name}/{i}": textured_node(group) for i, group in enumerate(by_file.values())}
+
+
+def textured_node(group: Sequence[TexturedMesh], selects: str = "") -> TexturedNode:
+    """Meshes under one picture; ``selects``: the vehicle that a click selects."""
+    offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in group[:-1])])
+    faces = np.vstack([mesh.faces + offset for mesh, offset in zip(group, offsets, strict=True)])
+    vertices, uv = (np.vstack([getattr(mesh, part) for mesh in group]) for part in ("vertices", "uv"))
+    return TexturedNode(vertices, faces, uv, group[0].picture, selects)
 
 
 def merge(parts: list[MeshPart], colour: Colour, selects: str = "") -> MeshNode:

@@ -46,7 +46,7 @@ def face_colours(mesh: Any) -> NDArray[np.uint8] | None:
     visual = mesh.visual
     if not visual.defined:
         return None
-    picture, uv = _picture(visual), getattr(visual, "uv", None)
+    picture, uv = picture_of(visual), getattr(visual, "uv", None)
     if picture is not None and uv is not None and len(uv) == len(mesh.vertices):
         pixels = np.asarray(picture.convert("RGB"))
         u, v = np.mod(uv[mesh.faces].mean(axis=1), 1.0).T
@@ -75,7 +75,8 @@ def _palette(colours: NDArray[np.uint8]) -> tuple[Floats, NDArray[np.int64]]:
     return palette, np.asarray(quantised, dtype=np.int64)[0]
 
 
-def _picture(visual: Any) -> Any:
+def picture_of(visual: Any) -> Any:
+    """The picture laid over a mesh by its material; None without one."""
     material = getattr(visual, "material", None)
     return getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
 
@@ -83,7 +84,7 @@ def _picture(visual: Any) -> Any:
 def _rgb(visual: Any) -> Floats | None:
     if not visual.defined:
         return None
-    picture, material = _picture(visual), getattr(visual, "material", None)
+    picture, material = picture_of(visual), getattr(visual, "material", None)
     if picture is not None:
         pixels: Floats = np.asarray(picture.convert("RGB").resize((16, 16)), dtype=np.float64).reshape(-1, 3)
         mean: Floats = pixels.mean(axis=0) / 255

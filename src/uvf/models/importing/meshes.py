@@ -82,7 +82,7 @@ def _solid(solid: Solid, hull: bool, tools: Tools) -> Iterator[Solid]:
         return
     wanted = RequestedMesh(scale=_scale(solid))
     try:
-        files = [(store.convert(solid.mesh, wanted), None)] if hull or solid.colour != GREY else store.by_colour(solid.mesh, wanted)
+        files = [(store.convert(solid.mesh, wanted), None)] if hull or solid.colour != GREY else store.drawn(solid.mesh, wanted)
         for file, _ in files:
             load_mesh(tools.folder / file)
     except BadInput as error:

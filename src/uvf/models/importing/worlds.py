@@ -93,6 +93,6 @@ def _read(file: Path, folder: Path, options: Options) -> tuple[WorldFile, list[s
 
 
 def _counts(world: WorldFile) -> str:
-    groups = ("boxes", "cylinders", "spheres", "meshes")
+    groups = ("boxes", "cylinders", "spheres", "meshes", "looks")
     counts = [f"{len(getattr(world, group))} {group}" for group in groups]
     return "taken over: " + ", ".join([*(["terrain"] if world.terrain is not None else []), *counts])

@@ -29,9 +29,14 @@ def _in_workspace(folder: Path, package: str) -> Path | None:
     """Of all meshes of a package that is not there it is looked for once."""
     for parent in _near(folder / package):
         for levels in ("*", "*/*"):
-            if parent != parent.parent and (found := sorted(parent.glob(f"{levels}/{package}/package.xml"))):
+            if parent != parent.parent and (found := _matching(parent, levels, f"{package}/package.xml")):
                 return found[0].parent
     return None
+
+
+def _matching(folder: Path, levels: str, name: str) -> list[Path]:
+    """The files of this name so many levels below a folder, where others may come and go while it is looked at."""
+    return [Path(found) for found in sorted(glob.glob(f"{glob.escape(str(folder))}/{levels}/{glob.escape(name)}"))]  # noqa: PTH207
 
 
 def enclosing_package(path: Path) -> Path | None:
@@ -47,8 +52,8 @@ def installed(path: Path) -> Path | None:
     package = enclosing_package(path)
     if package is None:
         return None
-    rest = glob.escape(str(path.relative_to(package)))
-    return next((found for deeper in ("*", "*/*") for found in sorted(package.glob(f"{deeper}/{rest}")) if is_file(found)), None)
+    rest = str(path.relative_to(package))
+    return next((found for deeper in ("*", "*/*") for found in _matching(package, deeper, rest) if is_file(found)), None)
 
 
 def find_mesh(path: Path, name: str) -> Path | None:

@@ -1,6 +1,7 @@
 """Buildings cut open at a height, so that one looks into their rooms."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from math import inf
 from typing import Any
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.solid import Solid
+from uvf.models.shapes.textured import TexturedMesh
 from uvf.models.world.file import WorldFile
 
 Floats = NDArray[np.float64]
@@ -38,6 +40,14 @@ def _roof(solid: Solid) -> float:
     high = corners[corners[:, :, 2].min(axis=1) > OVERHEAD]
     doubled = np.cross(high[:, 1] - high[:, 0], high[:, 2] - high[:, 0])[:, 2]
     return float(max(doubled[doubled > 0.0].sum(), -doubled[doubled < 0.0].sum())) / 2
+
+
+def cut_open_textured(mesh: TexturedMesh, height: float) -> TexturedMesh:
+    """The same of a mesh under a picture."""
+    down, there = np.array((0.0, 0.0, -1.0)), np.array((0.0, 0.0, height))
+    slicing: Any = trimesh.intersections.slice_faces_plane
+    vertices, faces, uv = slicing(mesh.vertices, mesh.faces, down, there, uv=mesh.uv)
+    return replace(mesh, vertices=np.asarray(vertices), faces=np.asarray(faces), uv=np.asarray(uv))
 
 
 def cut_open(vertices: Floats, faces: Faces, height: float) -> tuple[Floats, Faces]:

@@ -64,6 +64,7 @@ class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             "the first, and the motion repeats."
         ),
     ] = []
+    hidden: Annotated[bool, plain("Felt by vehicles and lidars and not drawn, for `looks` show it.")] = False
 
 
 class Ramp(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -94,6 +95,7 @@ class Cylinder(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             "the first, and the motion repeats."
         ),
     ] = []
+    hidden: Annotated[bool, plain("Felt by vehicles and lidars and not drawn, for `looks` show it.")] = False
 
 
 class Sphere(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -103,6 +105,7 @@ class Sphere(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     centre: Annotated[tuple[Metres, Metres, Metres], plain("Middle x, y, z [m], world frame.")]
     radius: Annotated[Positive, key("m", "Radius.")]
     colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")] = (0.5, 0.5, 0.55)
+    hidden: Annotated[bool, plain("Felt by vehicles and lidars and not drawn, for `looks` show it.")] = False
 
 
 class Mesh(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -118,6 +121,17 @@ class Mesh(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         1.0,
     )
     colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")] = (0.6, 0.6, 0.6)
+    hidden: Annotated[bool, plain("Felt by vehicles and lidars and not drawn, for `looks` show it.")] = False
+
+
+class Look(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Triangles that are seen by cameras and on the page and touch nothing; an OBJ file may have a picture, by its MTL file."""
+
+    file: Annotated[FileName, plain("STL or OBJ file in the world's folder.")]
+    position: Annotated[tuple[Metres, Metres, Metres], plain("Place of the file's origin x, y, z [m], world frame.")] = (0.0, 0.0, 0.0)
+    rpy: Annotated[Angles, plain("Roll, pitch, yaw [rad].")] = (0.0, 0.0, 0.0)
+    scale: Annotated[tuple[Positive, Positive, Positive], plain("Factors along the file's axes.")] = (1.0, 1.0, 1.0)
+    colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1; a picture is multiplied by it.")] = (1.0, 1.0, 1.0)
 
 
 class Field(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -164,6 +178,7 @@ class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     cylinders: Annotated[list[Cylinder], plain("Cylinders: pillars, people.")] = []
     spheres: Annotated[list[Sphere], plain("Spheres.")] = []
     meshes: Annotated[list[Mesh], plain("Things with a shape from a file.")] = []
+    looks: Annotated[list[Look], plain("What is only seen; what it stands for is `hidden`.")] = []
     terrain: Annotated[Terrain | None, plain("Hills from a picture.")] = None
     strips: Annotated[list[Strip], plain("Runways that aircraft land on; they are not drawn.")] = []
     wind: Annotated[Wind, plain("Wind of the place.")] = Wind()
@@ -198,11 +213,14 @@ def load_world(worlds: str | Path, name: str, named_at: FileLocation | None = No
 
 
 def _with_whole_paths(world: WorldFile, folder: Path) -> WorldFile:
-    meshes = [msgspec.structs.replace(m, file=str((folder / m.file).resolve())) for m in world.meshes]
+    meshes, looks = (
+        [msgspec.structs.replace(m, file=str((folder / m.file).resolve())) for m in part] for part in (world.meshes, world.looks)
+    )
+    world = msgspec.structs.replace(world, meshes=meshes, looks=looks)
     if world.terrain is None:
-        return msgspec.structs.replace(world, meshes=meshes)
+        return world
     terrain = msgspec.structs.replace(world.terrain, heights=str((folder / world.terrain.heights).resolve()))
-    return msgspec.structs.replace(world, meshes=meshes, terrain=terrain)
+    return msgspec.structs.replace(world, terrain=terrain)
 
 
 def _check_file(folder: Path, name: str, place: FileLocation) -> None:
@@ -236,6 +254,8 @@ def _check_things(world: WorldFile, folder: Path, place: FileLocation) -> None:
                 _check_script(thing.path, place.at(group, i, "path"))
             if isinstance(thing, Mesh):
                 _check_file(folder, thing.file, place.at(group, i, "file"))
+    for i, look in enumerate(world.looks):
+        _check_file(folder, look.file, place.at("looks", i, "file"))
 
 
 def _check_script(keys: Script, place: FileLocation) -> None:

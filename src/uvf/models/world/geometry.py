@@ -19,7 +19,7 @@ from uvf.models.world.terrain import relief, terrain_mesh
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-WALL = "wall"  # every stretch of wall is called so
+WALL, LOOK = "wall", "look"  # every stretch of wall, and whatever is only seen, is called so
 GRAZE = 0.001  # m, lower than that nothing is bumped into
 BLOCK = 16  # cells a side, of which the ground's lowest and highest are known together
 MOST_CELLS = 4_000_000
@@ -97,9 +97,12 @@ def solids(world: WorldFile, folder: Path = Path()) -> list[Solid]:
 
     folder: holds the files of a world that was not loaded from a file; a loaded one knows where they are.
     """
-    if world.terrain is None:
-        return things(world, folder)
-    return [*things(world, folder), land(world.terrain, terrain_mesh(world.terrain, folder))]
+    return [*things(world, folder), *hills(world, folder)]
+
+
+def hills(world: WorldFile, folder: Path = Path()) -> list[Solid]:
+    """The terrain of a world, if it has one; folder: as for ``solids``."""
+    return [] if world.terrain is None else [land(world.terrain, terrain_mesh(world.terrain, folder))]
 
 
 def land(terrain: Terrain, mesh: Path) -> Solid:
@@ -118,6 +121,13 @@ def things(world: WorldFile, folder: Path = Path()) -> list[Solid]:
     for m in world.meshes:
         made.append(Solid(m.name, "mesh", m.scale, np.array(m.position), from_euler(*m.rpy), m.colour, folder / m.file))
     return made
+
+
+def seen(world: WorldFile, folder: Path = Path()) -> list[Solid]:
+    """What is drawn of a world but its terrain: the things that are not hidden, and the looks; folder: as for ``solids``."""
+    hidden = {thing.name for group in (world.boxes, world.cylinders, world.spheres, world.meshes) for thing in group if thing.hidden}
+    looks = [Solid(LOOK, "mesh", k.scale, np.array(k.position), from_euler(*k.rpy), k.colour, folder / k.file) for k in world.looks]
+    return [*(solid for solid in things(world, folder) if solid.name not in hidden), *looks]
 
 
 def _script(path: Script) -> Keyframes | None:

@@ -66,6 +66,7 @@ class SdfGround:
         """
         kept = [t for t in things if np.abs(_place(t)).max() < FARTHEST]
         if len(kept) < len(things):
+            world = msgspec.structs.replace(world, looks=[k for k in world.looks if np.abs(k.position).max() < FARTHEST])
             self._notes.add(f"things farther than {FARTHEST:g} m from the origin are left out", f"{len(things) - len(kept)}")
         height, colour = max(planes, key=lambda plane: plane[0], default=(0.0, None))
         floor, storey = self._floor(kept), self._storey(kept)
@@ -75,7 +76,7 @@ class SdfGround:
             names = ", ".join(thing.name for thing in storey.things)
             kept = [thing for thing in kept if thing not in storey.things]
             if storey.is_slab:
-                fields = [Field(extent, thing.colour) for extent, thing in zip(storey.extents, storey.things, strict=True)]
+                fields = [Field(e, thing.colour) for e, thing in zip(storey.extents, storey.things, strict=True) if not thing.hidden]
                 self._notes.add("a slab under everything is the ground, z = 0", names)
             else:
                 kept += [_moved(thing, -SUNK) for thing in storey.things]
@@ -86,6 +87,7 @@ class SdfGround:
         if abs(height) > LEVEL:
             self._notes.add(f"the ground lies at {height:g} m; everything is moved by {-height:g} m so that it is z = 0")
             kept = [_moved(thing, -height) for thing in kept]
+            world = _looks_moved(world, -height)
         self._tell_sunk(kept)
         return msgspec.structs.replace(_with(world, kept), floor=floor, fields=fields, ground_colour=colour or PALE)
 
@@ -93,7 +95,7 @@ class SdfGround:
         """``world`` with the things on a terrain, moved so that its lowest, at ``lowest`` [m], is z = 0."""
         if abs(lowest) > LEVEL:
             self._notes.add(f"the terrain's lowest lies at {lowest:g} m; everything is moved by {-lowest:g} m so that it is z = 0")
-        moved = _with(world, [_moved(thing, -lowest) for thing in things])
+        moved = _with(_looks_moved(world, -lowest), [_moved(thing, -lowest) for thing in things])
         return msgspec.structs.replace(moved, terrain=terrain, floor=terrain_floor(terrain, self._notes))
 
     def _tell_sunk(self, things: Sequence[Thing]) -> None:
@@ -185,6 +187,11 @@ def _with(world: WorldFile, things: Sequence[Thing]) -> WorldFile:
         spheres=[t for t in things if isinstance(t, Sphere)],
         meshes=[t for t in things if isinstance(t, Mesh)],
     )
+
+
+def _looks_moved(world: WorldFile, up: float) -> WorldFile:
+    looks = [msgspec.structs.replace(k, position=(*k.position[:2], k.position[2] + up)) for k in world.looks]
+    return msgspec.structs.replace(world, looks=looks)
 
 
 def _place(thing: Thing) -> tuple[float, float, float]:

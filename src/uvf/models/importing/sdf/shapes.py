@@ -14,7 +14,7 @@ from uvf.models.importing.mesh_files import MeshStore, RequestedMesh
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.polygons import extruded
 from uvf.models.importing.sdf.poses import numbers, place_of
-from uvf.models.world.file import Box, Colour, Cylinder, Mesh, Sphere
+from uvf.models.world.file import Box, Colour, Cylinder, Look, Mesh, Sphere
 from uvf.models.yaml_data import BadInput
 
 Floats = NDArray[np.float64]
@@ -114,12 +114,31 @@ class Shapes:
         if source is None or not source.is_file():
             self._notes.add("meshes not found, their shapes are missing", uri)
             return []
-        scale = (numbers(mesh.find("scale"), 3) if mesh.find("scale") is not None else np.ones(3)) * who.scale
+        file = self._store.convert(source, self._wanted(mesh, who.scale))
+        return [Mesh(who.name, file, _point(pose.translation), _angles(pose), colour=who.colour or self._store.colour(source) or GREY)]
+
+    def looks(self, visual: Any, pose: Transform, who: Named) -> list[Look]:
+        """What a <visual> becomes that is a mesh; none, with a note, if it cannot be had. A colour of ``who`` holds for all of it."""
+        mesh = visual.find("geometry/mesh")
+        source = self._find((mesh.findtext("uri") or "").strip(), mesh)
+        if source is None or not source.is_file():
+            return []
+        try:
+            wanted = self._wanted(mesh, who.scale)
+            painted = (visual.findtext("material/pbr/metal/albedo_map") or "").strip()
+            picture = self._find(painted, visual) if painted else None
+            files = self._store.drawn(source, wanted, picture if picture is not None and picture.is_file() else None, sparing=True)
+        except BadInput as error:
+            self._notes.add("looks that cannot be read, left out", f"{who.name} ({error})")
+            return []
+        at = {"position": _point(pose.translation), "rpy": _angles(pose)}
+        return [Look(file, colour=who.colour or colour or GREY, **at) for file, colour in files]
+
+    def _wanted(self, mesh: Any, state_scale: Floats) -> RequestedMesh:
+        scale = (numbers(mesh.find("scale"), 3) if mesh.find("scale") is not None else np.ones(3)) * state_scale
         submesh = mesh.find("submesh")
         centred = submesh is not None and (submesh.findtext("center") or "").strip().lower() in ("true", "1")
-        part = (submesh.findtext("name") or "").strip() if submesh is not None else ""
-        file = self._store.convert(source, RequestedMesh(part, centred, _point(scale)))
-        return [Mesh(who.name, file, _point(pose.translation), _angles(pose), colour=who.colour or self._store.colour(source) or GREY)]
+        return RequestedMesh((submesh.findtext("name") or "").strip() if submesh is not None else "", centred, _point(scale))
 
     def mesh_colour(self, mesh: Any) -> Colour | None:
         """Colour that the file of a <mesh> tells; None when it tells none or is not there."""

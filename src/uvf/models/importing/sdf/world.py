@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,7 +20,7 @@ from uvf.models.importing.sdf.models import Models, read_sdf
 from uvf.models.importing.sdf.poses import Scope, numbers, place_of, relative_to, transform
 from uvf.models.importing.sdf.shapes import Named, Shapes, Thing, is_level
 from uvf.models.importing.sdf.state import NOTHING_SAVED, ModelState, deleted, saved_states
-from uvf.models.world.file import Colour, Origin, WorldFile
+from uvf.models.world.file import Colour, Look, Origin, WorldFile
 from uvf.models.world.wind import Wind
 from uvf.models.yaml_data import BadInput
 
@@ -59,6 +60,7 @@ class SdfImport:
         self._shapes = Shapes(MeshStore(folder, self.notes, upright), self._models.find, self.notes)
         self._planes: list[tuple[float, Colour | None]] = []
         self._heightmaps = Heightmaps(folder, self._models.find, self.notes)
+        self._looks: list[Look] = []
         self._names: set[str] = set()
         self._states: dict[str, ModelState] = {}
 
@@ -89,6 +91,7 @@ class SdfImport:
         first = element.find("model")
         about = f"Imported from {self._path.name}: {element.get('name') or ('' if first is None else first.get('name'))}."
         ground, settings = SdfGround(self._folder, self.notes), self._settings(element, about)
+        settings = msgspec.structs.replace(settings, looks=self._looks)
         if self._heightmaps.terrain is not None:
             return ground.on_terrain(settings, things, self._heightmaps.terrain, self._heightmaps.lowest)
         return ground.levelled(settings, things, self._planes, self._models.names_ground)
@@ -121,10 +124,23 @@ class SdfImport:
         name = link.get("name", "link")
         world_from_link = model.state.links.get(name) or compose(model.world_from_model, model.scope.pose(name))
         collisions, visuals = link.findall("collision"), link.findall("visual")
-        if visuals and not collisions:
+        looks = [look for visual in visuals for look in self._look(model, visual, world_from_link)]
+        self._looks += looks
+        if visuals and not collisions and not looks:
             self.notes.add("parts that are only seen and not touched are left out", f"{model.path}::{name}")
         for i, collision in enumerate(collisions):
-            yield from self._collision(model, collision, (world_from_link, self._name(model, link, i), visuals))
+            for thing in self._collision(model, collision, (world_from_link, self._name(model, link, i), visuals)):
+                yield msgspec.structs.replace(thing, hidden=bool(looks))
+
+    def _look(self, model: _Placed, visual: Any, world_from_link: Transform) -> list[Look]:
+        """Of a visual that is a mesh; plain shapes are shown by what they stand for."""
+        if visual.find("geometry/mesh") is None:
+            return []
+        pose = visual.find("pose")
+        frame = relative_to(pose)
+        owner = world_from_link if not frame else compose(model.world_from_model, model.scope.pose(frame))
+        colour = visual_colour(visual) if visual.find("material/pbr/metal/albedo_map") is None else None
+        return self._shapes.looks(visual, compose(owner, transform(pose)), Named(model.path, colour, model.state.scale))
 
     def _collision(self, model: _Placed, collision: Any, of_link: tuple[Transform, str, list[Any]]) -> Iterator[Thing]:
         world_from_link, name, visuals = of_link

@@ -33,12 +33,14 @@ def test_a_head_turns_on_a_lift_that_has_risen(model):
 
 def test_the_parts_at_rest_are_those_of_the_whole_vehicle(model):
     moving = MovingLinks(model, [LIFT, PAN]).places(None)
-    whole = bodies.rover_parts(model, ())[bodies.FAST]
+    whole = bodies.rover_parts(model, ())[bodies.FAST].plain
     parts = bodies.rover_parts(model, moving)
-    shown = [*parts[bodies.FAST]]
+    shown = [*parts[bodies.FAST].plain]
     for name, place in moving.items():
-        assert len(parts[name]) == 1
-        shown += [dataclasses.replace(part, vertices=apply(Transform(place.wxyz, place.position), part.vertices)) for part in parts[name]]
+        assert len(parts[name].plain) == 1
+        shown += [
+            dataclasses.replace(part, vertices=apply(Transform(place.wxyz, place.position), part.vertices)) for part in parts[name].plain
+        ]
     corners = lambda drawn: np.sort(np.round(np.vstack([part.vertices for part in drawn]), 6), axis=0)  # noqa: E731
     assert np.array_equal(corners(whole), corners(shown))
 
@@ -61,6 +63,6 @@ def test_the_front_wheels_of_a_car_turn_with_its_steering():
     links = MovingLinks(model, ["steering_left_joint", "steering_right_joint"])
     parts = bodies.rover_parts(model, links.places(None))
     places = links.places(told(steering_left_joint=0.3, steering_right_joint=0.3))
-    assert all(parts[name] for name in places)
+    assert all(parts[name].plain for name in places)
     turned = [rotate(place.wxyz, np.array((1.0, 0.0, 0.0))) for place in places.values()]
     assert np.array(turned) == pytest.approx(np.array([(np.cos(0.3), np.sin(0.3), 0.0)] * 2), abs=1e-9)
