@@ -196,8 +196,7 @@ class _Trial:
             _, gx, gy = self._later.pop(0)
             self._navigator.start(t, NavigationGoal(gx, gy))
         directive = self._navigator.step(t, pose, self._executor.report)
-        twist = self._odometry.twist
-        return Twist(*self._executor.step(t, pose, (twist.linear, twist.angular), directive))
+        return self._executor.step(t, pose, self._odometry.twist, directive)
 
     def _haunt(self) -> None:
         """Marks obstacles that are not there, as a sensor may have left them that does not look there any more."""

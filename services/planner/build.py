@@ -8,6 +8,7 @@ from services.planner.planned_vehicle import PlannedVehicle
 from services.planner.planner_service import PlannerService
 from services.planner.scan_placing import PlacedLidar, ScanPlacer
 from services.planner.tracker_service import FARTHEST, TrackerParams, TrackerService
+from uvf.maths.kinematics import Twist
 from uvf.maths.se2 import Pose2
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.urdf.model import load_urdf
@@ -20,7 +21,7 @@ from uvf.planning.costmap.inflation import Inflation
 from uvf.planning.global_planner import GlobalPlanner, PlannedBody
 from uvf.planning.local.controller import ControllerSettings, LocalController
 from uvf.planning.local.mppi import Mppi, MppiSettings
-from uvf.planning.local.planner import Limits
+from uvf.planning.local.planner import STOP, Limits
 from uvf.planning.local.swept_stop import safe_share
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.sensors.fitted import base_from_sensor, sweeping_of
@@ -90,5 +91,5 @@ def _warm_up() -> None:
         controller = LocalController(outline, limits, Mppi(limits, outline, MppiSettings(samples=200)), ControllerSettings())
         for t in (0.0, 0.1):
             controller.see(t, Pose2(0.0, 0.0, 0.0), (0.0, 0.0), rays, ranges)
-        controller.drive(Pose2(0.0, 0.0, 0.0), (0.0, 0.0), np.array(((0.0, 0.0), (0.5, 0.0))))
-    safe_share(np.array(((0.2, 0.0),)), (0.5, 0.1), box, 0.01, (0.3, 1.0, 1.0))
+        controller.drive(Pose2(0.0, 0.0, 0.0), STOP, np.array(((0.0, 0.0), (0.5, 0.0))))
+    safe_share(np.array(((0.2, 0.0),)), Twist(0.5, 0.1), box, 0.01, (0.3, 1.0, 1.0))

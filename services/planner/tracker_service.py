@@ -1,7 +1,7 @@
 """Directive, path, pose and the live scan -> velocity on ``cmd/planner``, ten times a second; never nearer to anything than allowed."""
 
 from dataclasses import replace
-from math import ceil, pi
+from math import ceil, hypot, pi
 from typing import Annotated, Literal
 
 import numpy as np
@@ -31,6 +31,7 @@ from services.planner.directives import directive_of, report_message
 from services.planner.masks import MaskReader
 from services.planner.obstacle_sensors import ObstacleSensors, OtherReadings
 from services.planner.team import Teammates
+from uvf.maths.kinematics import Twist
 from uvf.maths.se2 import IDENTITY, Pose2, transform
 from uvf.models.keys import key, plain
 from uvf.models.params import Params
@@ -51,6 +52,7 @@ from uvf.planning.smoothing import first_part
 from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, every, optional, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import cost_grid, pose2_of, seconds, stamp, wxyz, yaw_of
+from uvf.runtime.messages.wheels import drive_command
 
 Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
@@ -62,7 +64,7 @@ SCAN_MAX_AGE = 0.6  # s; without sight nothing moves
 SIZE = 8.0  # m, side of the window in which obstacles are remembered
 FARTHEST = 0.95 * SIZE / 2  # m
 HORIZON, FARTHEST_HORIZON = 2.8, 7.0  # s that the local planner looks ahead; of a car, half a turn but no more than the longer one
-REVERSE = 0.5  # of the speed forwards
+REVERSE, SIDEWAYS = 0.5, 0.6  # of the speed forwards
 LATERAL_ACCELERATION = 1.5  # m/s^2, beyond which wheels slide
 COSTS_PERIOD = 0.5  # s between two costmaps that are told
 EVENTS_EVERY = 10.0  # s between two events about what is ahead
@@ -127,7 +129,7 @@ class TrackerService(Service):
         self._body, self._footprint = body, footprint
         self._sensors, self._placer = sensors, sensors.placer
         self._pose: Pose2 = IDENTITY
-        self._velocity = (0.0, 0.0)
+        self._velocity = Twist(0.0, 0.0)
         self._made_for = params, 1.0
         self._keep_out, self._speed_map = MaskReader(), MaskReader()
         self._executor = Executor(self._controller())
@@ -155,11 +157,12 @@ class TrackerService(Service):
         if t - self._placer.t > SCAN_MAX_AGE:
             return self.stale(t, ("scan",))
         if now.odometry is not None:
-            self._velocity = now.odometry.linear_velocity.x, now.odometry.angular_velocity.z
+            moves, turns = now.odometry.linear_velocity, now.odometry.angular_velocity.z
+            self._velocity = Twist(moves.x, turns, moves.y if self._body.drive.kinematics.goes_sideways else 0.0)
         self._velocity = self._executor.step(t, self._pose, self._velocity, _directive(now.directive, now.path))
         report = self._executor.report
         return self.Outputs(
-            drive=DriveCommand(timestamp=stamp(t), linear=self._velocity[0], angular=self._velocity[1]),
+            drive=drive_command(self._velocity, stamp(t)),
             report=report_message(t, report),
             obstacles=_moving(seen[0].t, controller.moving) if seen else None,
             costs=self._costs(t, controller),
@@ -175,7 +178,7 @@ class TrackerService(Service):
         """Those that the lidar does not show (n, 2) [m, world] are obstacles; those that come nearer are stopped for in time."""
         team, here = self._team.present, self._pose[:2]
         controller.keep_out(disc_points(unseen(team, shown, here), here, TEAM_REACH))
-        stops_within = 2.0 * PERIOD + abs(self._velocity[0]) / self.params.deceleration
+        stops_within = 2.0 * PERIOD + hypot(self._velocity.linear, self._velocity.lateral) / self.params.deceleration
         controller.beware(disc_points(coming(team, self._team.velocities, stops_within), here, TEAM_REACH))
 
     def _share(self, grid: Grid | None) -> float:
@@ -206,6 +209,7 @@ class TrackerService(Service):
             body.max_angular_acceleration,
             LATERAL_ACCELERATION,
             turning_radius=tightest,
+            side_speed=min(SIDEWAYS * speed, body.max_twist.lateral),
         )
         horizon = min(max(HORIZON, pi * tightest / speed), FARTHEST_HORIZON)
         settings = ControllerSettings(

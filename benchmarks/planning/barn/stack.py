@@ -116,7 +116,8 @@ class MaplessStack:
         if not self.navigator.is_busy:  # a goal that was given up is tried again: what moves frees the way sooner or later
             self.navigator.start(t, self._goal)
         directive = self.navigator.step(t, odom_from_base, self.executor.report)
-        return self.executor.step(t, odom_from_base, (velocity.linear, velocity.angular), directive)
+        wanted = self.executor.step(t, odom_from_base, velocity, directive)
+        return wanted.linear, wanted.angular
 
 
 def move_base_stack(briefing: Briefing) -> MaplessStack:

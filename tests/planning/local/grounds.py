@@ -5,7 +5,7 @@ import numpy as np
 from uvf.planning.costmap.costmap import make_costmap
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import Inflation, cost_factors
-from uvf.planning.local.planner import NOBODY, Limits, LocalSituation, State, within
+from uvf.planning.local.planner import NOBODY, STOP, Limits, LocalSituation, State, within
 from uvf.planning.local.window import WindowSettings, local_window
 from uvf.planning.search.grid_search import GridSearch
 from uvf.planning.smoothing import resample
@@ -58,9 +58,10 @@ def path_to(costs, state, goal):
 
 def moved(state, command, limits=LIMITS):
     """The state ``DT`` later."""
-    v, w = within(limits, state, command, DT)
-    middle = state.yaw + w * DT / 2
-    return State(state.x + v * DT * np.cos(middle), state.y + v * DT * np.sin(middle), state.yaw + w * DT, v, w)
+    v, w, side = within(limits, state, command, DT)
+    cosine, sine = np.cos(state.yaw + w * DT / 2), np.sin(state.yaw + w * DT / 2)
+    x, y = state.x + (v * cosine - side * sine) * DT, state.y + (v * sine + side * cosine) * DT
+    return State(x, y, state.yaw + w * DT, v, w, side)
 
 
 def situation(costs, state, path, obstacles=NOBODY):
@@ -75,7 +76,7 @@ def drive(planner, costs, goal, *, start=START, seconds=20.0, obstacles_at=lambd
         state = states[-1]
         path = path_to(costs, state, goal)
         command = planner.command(situation(costs, state, path, obstacles_at(k * DT)))
-        states.append(moved(state, command or (0.0, 0.0), limits))
+        states.append(moved(state, command or STOP, limits))
         if np.hypot(states[-1].x - goal[0], states[-1].y - goal[1]) < 0.15:
             break
     return states

@@ -7,13 +7,14 @@ import pytest
 
 from services.planner.build import build
 from tests.planning.local.grounds import BODY, DT, LIMITS, drive, gap, ground
+from uvf.maths.kinematics import Twist
 from uvf.maths.se2 import Pose2
 from uvf.models.scenario import load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.planning.costmap.bumps import Bump
 from uvf.planning.local.controller import ControllerSettings, LocalController
 from uvf.planning.local.mppi import Mppi, MppiSettings
-from uvf.planning.local.planner import State, fastest_turn, within
+from uvf.planning.local.planner import STOP, State, fastest_turn, within
 from uvf.planning.navigation.directive import Action, Directive, Report
 from uvf.planning.navigation.execution import Executor
 from uvf.planning.navigation.failures import Failure, Recovery, recoveries
@@ -27,7 +28,7 @@ CAR = LIMITS._replace(max_speed=0.6, min_speed=-0.4, max_turn_rate=0.6 / RADIUS,
 @pytest.mark.parametrize(("speed", "most"), [(0.0, 0.0), (0.35, 0.5), (-0.35, 0.5), (0.6, 0.6 / RADIUS)])
 def test_it_turns_no_faster_than_its_speed_over_its_radius(speed, most):
     assert fastest_turn(CAR, speed) == pytest.approx(most)
-    _, turn = within(CAR, State(0.0, 0.0, 0.0, speed, 2.0), (speed, 2.0), 0.05)
+    turn = within(CAR, State(0.0, 0.0, 0.0, speed, 2.0), Twist(speed, 2.0), 0.05).angular
     assert turn <= most + 1e-9
 
 
@@ -94,18 +95,17 @@ def seen_ahead(limits):
 def test_it_backs_up_only_onto_ground_that_has_been_seen():
     executor, back = Executor(seen_ahead(CAR)), Directive(1, Action.BACK_UP, amount=0.3)
     for i in range(15):
-        assert executor.step(0.1 * i, Pose2(0.0, 0.0, 0.0), (0.0, 0.0), back) == (0.0, 0.0)
+        assert executor.step(0.1 * i, Pose2(0.0, 0.0, 0.0), STOP, back) == STOP
     assert executor.report.impossible
     assert executor.controller.knows_behind(Pose2(2.0, 0.0, 0.0))
-    speed, _ = executor.step(2.0, Pose2(2.0, 0.0, 0.0), (0.0, 0.0), replace(back, number=2))
-    assert speed < 0.0
+    assert executor.step(2.0, Pose2(2.0, 0.0, 0.0), STOP, replace(back, number=2)).linear < 0.0
 
 
 def test_it_draws_back_from_a_touch_without_turning():
     bump = Bump(Pose2(0.0, 0.0, 0.0), (0.0, 1.0), np.array(((0.3, 0.1),)))
-    assert Retreat(0.0, Pose2(0.0, 0.0, 0.0), bump).wanted()[1] != 0.0
-    speed, turn = Retreat(0.0, Pose2(0.0, 0.0, 0.0), bump, turns_on_the_spot=False).wanted()
-    assert speed < 0.0 and turn == 0.0
+    assert Retreat(0.0, Pose2(0.0, 0.0, 0.0), bump).wanted().angular != 0.0
+    away = Retreat(0.0, Pose2(0.0, 0.0, 0.0), bump, turns_on_the_spot=False).wanted()
+    assert away.linear < 0.0 and away.angular == 0.0
 
 
 def test_a_local_planner_that_turns_on_the_spot_is_refused_for_it(tmp_path):

@@ -11,7 +11,7 @@ from uvf.planning.costmap.inflation import LETHAL
 from uvf.planning.costmap.obstacle_layer import ObstacleLayer
 from uvf.planning.local.controller import ControllerSettings, LocalController
 from uvf.planning.local.mppi import Mppi, MppiSettings
-from uvf.planning.local.planner import Limits
+from uvf.planning.local.planner import STOP, Limits
 
 FAST = Limits(-2.0, 2.0, 3.0, 4.0, 10.0, 3.5)
 HERE = Pose2(0.0, 0.0, 0.0)
@@ -43,7 +43,7 @@ def test_what_moves_leaves_no_marks_where_it_is_and_was():
 )
 def test_the_stop_heeds_what_stands_or_crawls_and_what_is_quicker_where_it_is_to(speed, stops_for_fast, stops):
     controller = watching(lambda t: np.array(((0.95, speed * (t - 1.0), 0.3),)), 1.0, stops_for_fast=stops_for_fast)
-    command = controller.made_safe((1.4, 0.0), (1.4, 0.0))
+    command = controller.made_safe(Twist(1.4, 0.0), Twist(1.4, 0.0))
     assert (command[0] < 1.4) == stops
 
 
@@ -52,11 +52,11 @@ def test_more_is_driven_only_while_something_moves_near_by():
     near = watching(lambda t: np.array(((1.0 - t, 4.5, 0.4),)), 1.0)
     found = {}
     for name, controller in (("far", far), ("near", near)):
-        velocity = (1.4, 0.0)
+        velocity = Twist(1.4, 0.0)
         for _ in range(8):
             result = controller.drive(HERE, velocity, PATH)
-            velocity = (result.speed, result.turn_rate)
-        found[name] = result.speed
+            velocity = result.velocity
+        found[name] = velocity.linear
     assert len(far.moving.moving()) == len(near.moving.moving()) == 1
     assert found["far"] <= LIMITS.max_speed + 1e-9 < found["near"]
 
@@ -76,10 +76,10 @@ def test_a_disc_is_freed_cell_by_cell(centre):
 @pytest.mark.parametrize("stops_for_fast", [False, True])
 def test_who_holds_stands_until_something_comes_at_it(stops_for_fast):
     calm = watching(lambda t: np.zeros((0, 3)), 0.2)
-    assert calm.hold(HERE, (0.0, 0.0)) == (0.0, 0.0)
+    assert calm.hold(HERE, STOP) == STOP
     threatened = watching(lambda t: np.array(((4.5 - 1.5 * t, 0.1, 0.4),)), 1.0, stops_for_fast=stops_for_fast)
-    velocity, pose = (0.0, 0.0), HERE
+    velocity, pose = STOP, HERE
     for _ in range(40):
         velocity = threatened.hold(pose, velocity)
-        pose = move(pose, Twist(*velocity), 0.05)
+        pose = move(pose, velocity, 0.05)
     assert np.hypot(pose[0], pose[1]) > 0.4

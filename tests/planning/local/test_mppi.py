@@ -22,7 +22,7 @@ from tests.planning.local.grounds import (
 )
 from uvf.planning.costmap.costmap import make_costmap
 from uvf.planning.local.mppi import Mppi, MppiSettings
-from uvf.planning.local.planner import Limits, State
+from uvf.planning.local.planner import STOP, Limits, State
 
 FAST = Limits(-2.0, 2.0, 3.0, 4.0, 10.0, 3.5)
 
@@ -107,7 +107,7 @@ def test_it_keeps_off_ground_that_nothing_has_seen_where_there_is_other():
         path, state, worst = np.column_stack((np.linspace(-3.0, 3.0, 61), np.zeros(61))), START, []
         planner, costs = mppi(), half_known(first)
         for _ in range(100):
-            state = moved(state, planner.command(situation(costs, state, path)) or (0.0, 0.0))
+            state = moved(state, planner.command(situation(costs, state, path)) or STOP)
             worst.append(state.y + 0.2 * np.cos(state.yaw) + 0.25 * abs(np.sin(state.yaw)) - first)
         return np.mean(np.array(worst[20:]) > 0.05), state.x
 

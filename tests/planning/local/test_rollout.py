@@ -16,16 +16,19 @@ MOVING = np.array(((1.5, 1.5, -0.4, -0.8, 0.3), (-1.0, 2.0, 0.5, -0.7, 0.2)))
 OTHERS = Others(MOVING, BODY.sides(), BODY.circumscribed_radius, heed=1.5, growth=0.1, doubt=(0.1, 0.25))
 
 
-def poses(state, commands):
-    """(n, 5) x, y, yaw, speed, turn rate after each step."""
-    x, y, yaw, v, w = state
+def poses(state, commands, limits=LIMITS):
+    """(n, 6) x, y, yaw, speed, turn rate, speed to the left after each step."""
+    x, y, yaw, v, w, side = state
     rows = []
-    for wanted, turn in commands:
+    for wanted, turn, across in commands:
         v = v + np.clip(np.clip(wanted, LIMITS.min_speed, LIMITS.max_speed) - v, -LIMITS.acceleration * DT, LIMITS.acceleration * DT)
         most = min(LIMITS.max_turn_rate, LIMITS.lateral_acceleration / max(abs(v), 1e-3))
         w = w + np.clip(np.clip(turn, -most, most) - w, -LIMITS.angular_acceleration * DT, LIMITS.angular_acceleration * DT)
-        x, y, yaw = x + v * DT * np.cos(yaw + w * DT / 2), y + v * DT * np.sin(yaw + w * DT / 2), yaw + w * DT
-        rows.append((x, y, yaw, v, w))
+        most = LIMITS.acceleration * DT
+        side = side + np.clip(np.clip(across, -limits.side_speed, limits.side_speed) - side, -most, most)
+        c, s = np.cos(yaw + w * DT / 2), np.sin(yaw + w * DT / 2)
+        x, y, yaw = x + (v * c - side * s) * DT, y + (v * s + side * c) * DT, yaw + w * DT
+        rows.append((x, y, yaw, v, w, side))
     return np.array(rows)
 
 
@@ -36,17 +39,17 @@ def outline_gap(row, disc, radius):
     return max(abs(c * dx + s * dy) - 0.25, abs(c * dy - s * dx) - 0.2, np.hypot(dx, dy) - np.hypot(0.25, 0.2)) - radius
 
 
-def expected(now, commands):
+def expected(now, commands, limits=LIMITS):
     """(FEATURES,) by the definitions in ``rollout``, one pose after the other."""
     g = now.grids
     x0, y0, resolution = g.frame
-    rows, n = poses(now.state, commands), len(commands)
+    rows, n = poses(now.state, commands, limits), len(commands)
     sums = dict.fromkeys(("cost", "to_go", "off", "back", "turn", "near", "fast", "close"), 0.0)
     worst, collided, to_go = 0.0, 0.0, 0.0
     for i, row in enumerate(rows):
         r, c = int((row[1] - y0) // resolution), int((row[0] - x0) // resolution)
         bit = np.uint64(1) << np.uint64(heading_bin(row[2]))
-        share = row[3] / LIMITS.max_speed
+        share = np.hypot(row[3], row[5]) / LIMITS.max_speed
         if g.blocked[r, c] & bit:
             collided = 1.0 - i / n
         elif g.close[r, c] & bit:
@@ -72,7 +75,7 @@ def expected(now, commands):
         sums["off"] += g.off_path[r, c]
         sums["to_go"] += to_go
         sums["turn"] += abs(row[4])
-        sums["back"] += max(-row[3], 0.0) * DT
+        sums["back"] += (max(-row[3], 0.0) + rollout.SIDEWAYS * abs(row[5])) * DT
     out = np.zeros(FEATURES)
     out[rollout.COLLIDED], out[rollout.COST], out[rollout.WORST] = collided, sums["cost"] / (252 * n), worst
     out[rollout.TO_GO], out[rollout.MEAN_TO_GO], out[rollout.OFF_PATH] = to_go, sums["to_go"] / n, sums["off"] / n
@@ -81,20 +84,21 @@ def expected(now, commands):
     return out
 
 
-def rolled(now, commands, others=OTHERS):
+def rolled(now, commands, others=OTHERS, limits=LIMITS):
     out = np.empty((len(commands), FEATURES), dtype=np.float32)
-    roll_out(now.grids, now.state, commands, (DT, LIMITS), others, out)
+    roll_out(now.grids, now.state, commands, (DT, limits), others, out)
     return out
 
 
-def test_features_are_those_of_their_definitions():
+@pytest.mark.parametrize("limits", [LIMITS, LIMITS._replace(side_speed=0.6)])
+def test_features_are_those_of_their_definitions(limits):
     state = State(-0.6, 0.05, 0.1, 0.6, 0.2)
     now = situation(ground(BOX), state, PATH)
     rng = np.random.default_rng(7)
-    commands = rng.normal((0.7, 0.0), (0.8, 1.2), (60, 1, 2)) + rng.normal(0.0, 0.3, (60, STEPS, 2))
+    commands = rng.normal((0.7, 0.0, 0.0), (0.8, 1.2, 0.5), (60, 1, 3)) + rng.normal(0.0, 0.3, (60, STEPS, 3))
     commands = commands.astype(np.float32)
-    found = rolled(now, commands)
-    wanted = np.array([expected(now, row) for row in commands.astype(float)])
+    found = rolled(now, commands, limits=limits)
+    wanted = np.array([expected(now, row, limits) for row in commands.astype(float)])
     assert (wanted[:, rollout.COLLIDED] > 0.0).sum() > 5 and (wanted[:, rollout.COLLIDED] == 0.0).sum() > 5
     assert (wanted[:, rollout.REVERSED] > 0.0).sum() > 5 and (wanted[:, rollout.NEAR] > 0.3).sum() > 5
     found, wanted = np.delete(found, rollout.ASIDE, axis=1), np.delete(wanted, rollout.ASIDE, axis=1)
@@ -106,7 +110,7 @@ def test_a_vehicle_that_skids_slides_out_of_its_curve():
     """On a circle the way across is the sideslip times speed, turn rate and time; the way that it was driven along stays the same."""
     state = State(0.0, 0.0, 0.0, 1.0, 1.0)
     now = situation(ground(), state, PATH)
-    turn = np.tile(np.float32((1.0, 1.0)), (1, STEPS, 1))
+    turn = np.tile(np.float32((1.0, 1.0, 0.0)), (1, STEPS, 1))
     t = np.linspace(0.0, STEPS * DT, 20001)
     ahead, aside = 1.0, -0.1 * 1.0 * 1.0
     x = np.trapezoid(ahead * np.cos(t) - aside * np.sin(t), t)
@@ -122,10 +126,22 @@ def test_a_vehicle_that_skids_slides_out_of_its_curve():
     assert touched[1] == 0.0
 
 
+@pytest.mark.parametrize("side", [0.5, -0.5])
+def test_going_sideways_over_unseen_ground_counts_more(side):
+    state, limits = State(0.0, 0.0, 0.0, 0.0, 0.0, side), LIMITS._replace(side_speed=0.5)
+    now = situation(ground(), state, PATH)
+    across = np.tile(np.float32((0.0, 0.0, side)), (1, STEPS, 1))
+    nobody = OTHERS._replace(obstacles=np.zeros((0, 5)))
+    known = rolled(now, across, nobody, limits)[0, rollout.REVERSED]
+    assert known == pytest.approx(rollout.SIDEWAYS * 0.5 * STEPS * DT, rel=1e-4)
+    unseen = type(now)(now.state, now.grids._replace(seen=np.zeros_like(now.grids.seen)), now.path)
+    assert rolled(unseen, across, nobody, limits)[0, rollout.REVERSED] == pytest.approx(rollout.UNSEEN * known)
+
+
 def test_reversing_over_unseen_ground_counts_more():
     state = State(0.0, 0.0, 0.0, -0.5, 0.0)
     now = situation(ground(), state, PATH)
-    back = np.tile(np.float32((-0.5, 0.0)), (1, STEPS, 1))
+    back = np.tile(np.float32((-0.5, 0.0, 0.0)), (1, STEPS, 1))
     known = rolled(now, back)[0, rollout.REVERSED]
     unseen = type(now)(now.state, now.grids._replace(seen=np.zeros_like(now.grids.seen)), now.path)
     assert rolled(unseen, back)[0, rollout.REVERSED] == pytest.approx(rollout.UNSEEN * known)
@@ -134,7 +150,7 @@ def test_reversing_over_unseen_ground_counts_more():
 def test_a_vehicle_that_touches_from_the_start_may_get_out():
     state = State(0.5, 0.0, 0.0, 0.0, 0.0)  # its front is in the box
     now = situation(ground(BOX), state, PATH)
-    commands = np.stack([np.tile(np.float32((v, 0.0)), (STEPS, 1)) for v in (-0.5, 0.0)])
+    commands = np.stack([np.tile(np.float32((v, 0.0, 0.0)), (STEPS, 1)) for v in (-0.5, 0.0)])
     nobody = OTHERS._replace(obstacles=np.zeros((0, 5)))
     found = rolled(now, commands, nobody)
     assert (found[:, rollout.COLLIDED] == 0.0).all()

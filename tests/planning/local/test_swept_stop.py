@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from uvf.maths.kinematics import Twist
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local.swept_stop import safe_share
 
@@ -26,11 +27,12 @@ def is_touched(points, pose, footprint):
 
 def braked(points, command, footprint):
     """Whether a vehicle that drives on for the reaction time, then brakes both rates together along its arc, touches nothing."""
-    pose, (v, w), dt = np.zeros(3), command, 0.002
-    slowing = max(abs(v) / BRAKE[1], abs(w) / BRAKE[2])
+    pose, (v, w, side), dt = np.zeros(3), command, 0.002
+    slowing = max(np.hypot(v, side) / BRAKE[1], abs(w) / BRAKE[2])
     for k in range(round((BRAKE[0] + slowing) / dt)):
         left = 1.0 if k * dt < BRAKE[0] or slowing == 0.0 else max(1.0 - (k * dt - BRAKE[0]) / slowing, 0.0)
-        pose = pose + left * dt * np.array((v * np.cos(pose[2]), v * np.sin(pose[2]), w))
+        c, s = np.cos(pose[2]), np.sin(pose[2])
+        pose = pose + left * dt * np.array((v * c - side * s, v * s + side * c, w))
         if is_touched(points, pose, footprint):
             return False
     return True
@@ -39,7 +41,7 @@ def braked(points, command, footprint):
 @settings(max_examples=150, deadline=None, derandomize=True)
 @given(
     st.lists(st.tuples(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5)), min_size=1, max_size=12),
-    st.tuples(st.floats(-2.0, 2.0), st.floats(-3.0, 3.0)),
+    st.builds(Twist, st.floats(-2.0, 2.0), st.floats(-3.0, 3.0), st.sampled_from((0.0, 0.8, -1.5))),
     st.sampled_from((JACKAL, ROUND)),
 )
 def test_what_passes_can_brake_without_a_touch(places, command, footprint):
@@ -48,7 +50,7 @@ def test_what_passes_can_brake_without_a_touch(places, command, footprint):
         return
     share = safe_share(points, command, footprint, MARGIN, BRAKE)
     assert 0.0 <= share <= 1.0
-    assert braked(points, (share * command[0], share * command[1]), footprint)
+    assert braked(points, Twist(*(share * part for part in command)), footprint)
 
 
 @pytest.mark.parametrize("footprint", [JACKAL, ROUND])
@@ -57,7 +59,7 @@ def test_a_vehicle_at_full_speed_before_a_wall_never_touches_it(footprint):
     wall = np.column_stack((np.full(81, 2.0), np.linspace(-2.0, 2.0, 81)))
     x, v = 0.0, 2.0
     for _ in range(200):
-        share = safe_share(wall - np.array((x, 0.0)), (2.0, 0.0), footprint, MARGIN, BRAKE)
+        share = safe_share(wall - np.array((x, 0.0)), Twist(2.0, 0.0), footprint, MARGIN, BRAKE)
         wanted = 2.0 * share
         v = max(wanted, v - BRAKE[1] * 0.05)
         x += v * 0.05
@@ -67,14 +69,14 @@ def test_a_vehicle_at_full_speed_before_a_wall_never_touches_it(footprint):
 
 
 def test_nothing_near_lets_all_through_and_turning_counts_the_corners():
-    assert safe_share(np.zeros((0, 2)), (2.0, 1.0), JACKAL, MARGIN, BRAKE) == 1.0
-    assert safe_share(np.array(((50.0, 0.0),)), (2.0, 0.0), JACKAL, MARGIN, BRAKE) == 1.0
+    assert safe_share(np.zeros((0, 2)), Twist(2.0, 1.0), JACKAL, MARGIN, BRAKE) == 1.0
+    assert safe_share(np.array(((50.0, 0.0),)), Twist(2.0, 0.0), JACKAL, MARGIN, BRAKE) == 1.0
     beside = np.array(((0.0, 0.26),))  # a corner passes here in a turn
-    assert safe_share(beside, (0.0, 2.0), JACKAL, MARGIN, BRAKE) < 1.0
-    assert safe_share(beside, (0.0, 2.0), RobotFootprint.circle(0.2), MARGIN, BRAKE) == 1.0
+    assert safe_share(beside, Twist(0.0, 2.0), JACKAL, MARGIN, BRAKE) < 1.0
+    assert safe_share(beside, Twist(0.0, 2.0), RobotFootprint.circle(0.2), MARGIN, BRAKE) == 1.0
 
 
 def test_who_touches_already_may_only_move_away():
     ahead = np.array(((0.25, 0.0),))
-    assert safe_share(ahead, (0.5, 0.0), JACKAL, MARGIN, BRAKE) == 0.0
-    assert safe_share(ahead, (-0.5, 0.0), JACKAL, MARGIN, BRAKE) > 0.0
+    assert safe_share(ahead, Twist(0.5, 0.0), JACKAL, MARGIN, BRAKE) == 0.0
+    assert safe_share(ahead, Twist(-0.5, 0.0), JACKAL, MARGIN, BRAKE) > 0.0

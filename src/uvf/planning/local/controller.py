@@ -7,6 +7,7 @@ from math import cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, inverse, transform
 from uvf.planning.costmap.costmap import Costmap
@@ -70,10 +71,9 @@ class Drive(Enum):
 
 @dataclass(frozen=True)
 class DriveResult:
-    """Velocity [m/s, rad/s] for now, and how it came about."""
+    """Velocity for now, and how it came about."""
 
-    speed: float
-    turn_rate: float
+    velocity: Twist
     how: Drive
 
 
@@ -187,29 +187,29 @@ class LocalController:
         """The costmap in which the vehicle may leave a place that is too near to an obstacle."""
         return with_way_out(costs, costs.cell(pose[0], pose[1]), WAY_OUT)
 
-    def drive(self, pose: Pose2, velocity: tuple[float, float], path: Floats, heading: float | None = None) -> DriveResult:
-        """Velocity for now along ``path`` (n, 2) [m, the poses' frame]; velocity: measured [m/s, rad/s].
+    def drive(self, pose: Pose2, velocity: Twist, path: Floats, heading: float | None = None) -> DriveResult:
+        """Velocity for now along ``path`` (n, 2) [m, the poses' frame]; velocity: measured.
 
         heading: [rad, the poses' frame] to turn to at the path's end; None = any.
         """
         if len(path) == 0:
             self._last = STOP
-            return DriveResult(*STOP, Drive.NO_PATH)
+            return DriveResult(STOP, Drive.NO_PATH)
         limits = self._limits_now(pose)
         state = self._ahead(pose, velocity, limits)
         if self._goal.at_place(state, (float(path[-1, 0]), float(path[-1, 1]))):
             return self._at_goal(state, velocity, heading)
         return self._along((pose, velocity), state, limits, path)
 
-    def hold(self, pose: Pose2, velocity: tuple[float, float]) -> tuple[float, float]:
+    def hold(self, pose: Pose2, velocity: Twist) -> Twist:
         """Stands, as long as nothing that moves comes near; a vehicle that may evade makes way for it."""
         if self.settings.evasion is None or not self._is_among_moving(pose):
             return self.halt()
         limits = self.settings.evasion
         result = self._along((pose, velocity), self._ahead(pose, velocity, limits), limits, np.array((pose[:2],)))
-        return result.speed, result.turn_rate
+        return result.velocity
 
-    def _along(self, measured: tuple[Pose2, tuple[float, float]], state: State, limits: Limits, path: Floats) -> DriveResult:
+    def _along(self, measured: tuple[Pose2, Twist], state: State, limits: Limits, path: Floats) -> DriveResult:
         """Along the path from the state that is expected when the command takes effect."""
         (pose, velocity), settings = measured, self.settings
         obstacles = self.moving.moving()
@@ -218,17 +218,17 @@ class LocalController:
         grids = local_window(costs, (pose[0], pose[1]), path, self._factors, settings.window)
         wanted = self.planner.command(LocalSituation(state, grids, path, obstacles, limits))
         if wanted is None:
-            return DriveResult(*self._reach(state, velocity, STOP, limits), Drive.NO_VALID_CONTROL)
+            return DriveResult(self._reach(state, velocity, STOP, limits), Drive.NO_VALID_CONTROL)
         stopped = self._reach(state, velocity, wanted, limits) == STOP and wanted != STOP
-        return DriveResult(*self._last, Drive.STOPPED if stopped else Drive.DRIVING)
+        return DriveResult(self._last, Drive.STOPPED if stopped else Drive.DRIVING)
 
-    def halt(self) -> tuple[float, float]:
+    def halt(self) -> Twist:
         """Zero velocity, as fast as the wheels can."""
         self._last = STOP
         return STOP
 
-    def move(self, pose: Pose2, velocity: tuple[float, float], wanted: tuple[float, float]) -> tuple[float, float]:
-        """A wanted velocity (m/s, rad/s) within the limits of acceleration; the stop has the last word."""
+    def move(self, pose: Pose2, velocity: Twist, wanted: Twist) -> Twist:
+        """A wanted velocity within the limits of acceleration; the stop has the last word."""
         return self._reach(self._ahead(pose, velocity, self.limits), velocity, wanted, self.limits)
 
     def _is_among_moving(self, pose: Pose2) -> bool:
@@ -238,46 +238,46 @@ class LocalController:
     def _limits_now(self, pose: Pose2) -> Limits:
         return self.settings.evasion if self.settings.evasion is not None and self._is_among_moving(pose) else self.limits
 
-    def _reach(self, state: State, velocity: tuple[float, float], wanted: tuple[float, float], limits: Limits) -> tuple[float, float]:
+    def _reach(self, state: State, velocity: Twist, wanted: Twist, limits: Limits) -> Twist:
         reached = within(limits, state, wanted, self.settings.period)
         self._last = self.made_safe(reached, velocity)
         return self._last
 
-    def _at_goal(self, state: State, velocity: tuple[float, float], heading: float | None) -> DriveResult:
+    def _at_goal(self, state: State, velocity: Twist, heading: float | None) -> DriveResult:
         """Stands, or turns to the heading where that is not the wanted one yet."""
         if there := heading is None or self._goal.has_heading(state, heading):
             wanted = STOP
         else:
             wanted = turn_to_heading(state, heading, self.limits)
         if self._reach(state, velocity, wanted, self.limits) == STOP and wanted != STOP:
-            return DriveResult(*STOP, Drive.STOPPED)
-        return DriveResult(*self._last, Drive.ARRIVED if there else Drive.DRIVING)
+            return DriveResult(STOP, Drive.STOPPED)
+        return DriveResult(self._last, Drive.ARRIVED if there else Drive.DRIVING)
 
-    def made_safe(self, wanted: tuple[float, float], velocity: tuple[float, float]) -> tuple[float, float]:
+    def made_safe(self, wanted: Twist, velocity: Twist) -> Twist:
         """The wanted velocity, slowed so that the vehicle can stop before everything that the last scan shows or that is
         remembered near it.
 
-        velocity: the measured one [m/s, rad/s]; where it is the larger of the two, it counts.
+        velocity: the measured one; where it is the larger of the two, it counts.
         """
         s = self.settings
         brake = (s.reaction, s.braking, s.angular_braking)
-        faster = tuple(m if abs(m) > abs(w) else w for w, m in zip(wanted, velocity, strict=True))
+        faster = Twist(*(m if abs(m) > abs(w) else w for w, m in zip(wanted, velocity, strict=True)))
         share = min(
-            safe_share(self._near, v, self.footprint, s.stop_margin + s.slip * abs(v[0] * v[1]), brake)
-            for v in (wanted, (faster[0], faster[1]))
+            safe_share(self._near, v, self.footprint, s.stop_margin + s.slip * abs(v.linear * v.angular), brake) for v in (wanted, faster)
         )
-        return share * wanted[0], share * wanted[1]
+        return Twist(*(share * part for part in wanted))
 
-    def _ahead(self, pose: Pose2, velocity: tuple[float, float], limits: Limits) -> State:
+    def _ahead(self, pose: Pose2, velocity: Twist, limits: Limits) -> State:
         """Where the vehicle will be, and how fast, when the command takes effect.
 
         The last command counts as its velocity, as far as the measured one is near: measurements lag behind.
         """
         d, lag = self.settings.delay, 3 * self.settings.period
         dv, dw = limits.acceleration * lag, limits.angular_acceleration * lag
-        v = min(max(self._last[0], velocity[0] - dv), velocity[0] + dv)
-        w = min(max(self._last[1], velocity[1] - dw), velocity[1] + dw)
+        v = min(max(self._last.linear, velocity.linear - dv), velocity.linear + dv)
+        w = min(max(self._last.angular, velocity.angular - dw), velocity.angular + dw)
+        side = min(max(self._last.lateral, velocity.lateral - dv), velocity.lateral + dv)
         middle = pose[2] + w * d / 2
-        ahead, aside = v * d, -limits.sideslip * v * w * d
+        ahead, aside = v * d, (side - limits.sideslip * v * w) * d
         x, y = ahead * cos(middle) - aside * sin(middle), ahead * sin(middle) + aside * cos(middle)
-        return State(pose[0] + x, pose[1] + y, pose[2] + w * d, v, w)
+        return State(pose[0] + x, pose[1] + y, pose[2] + w * d, v, w, side)

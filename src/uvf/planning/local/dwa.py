@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.maths.kinematics import Twist
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local import rollout
 from uvf.planning.local.planner import Limits, LocalSituation, State
@@ -44,12 +45,13 @@ class Dwa:
     def reset(self) -> None:
         """Nothing is remembered from one cycle to the next."""
 
-    def command(self, now: LocalSituation) -> tuple[float, float] | None:
-        """Velocity (m/s, rad/s) for now; None where every arc touches something or leads nowhere."""
+    def command(self, now: LocalSituation) -> Twist | None:
+        """Velocity for now; None where every arc touches something or leads nowhere."""
         s, state = self.settings, now.state
         pairs = self._window(state)
         steps = max(round(s.sim_time / s.step), 1)
-        commands = np.ascontiguousarray(np.repeat(pairs[:, None, :], steps, axis=1).astype(np.float32))
+        commands = np.zeros((len(pairs), steps, 3), dtype=np.float32)
+        commands[:, :, :2] = pairs[:, None, :]
         found = np.empty((len(pairs), FEATURES), dtype=np.float32)
         others = Others(now.obstacles, *self._outline)
         roll_out(now.grids, state, commands, (s.step, self._limits), others, found)
@@ -62,7 +64,7 @@ class Dwa:
             + s.occdist_scale * found[:, rollout.WORST]
         )
         best = int(np.argmin(np.where(allowed, costs, np.inf)))
-        return float(pairs[best, 0]), float(pairs[best, 1])
+        return Twist(float(pairs[best, 0]), float(pairs[best, 1]))
 
     def _window(self, state: State) -> Floats:
         """(k, 2) commands within reach, with standing still in turn rate among them."""

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
 from uvf.maths.grids import distance_field
+from uvf.maths.kinematics import Twist
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import LETHAL
 from uvf.planning.local.planner import Limits, LocalSituation
@@ -72,8 +73,8 @@ class ElasticBand:
         """(n, 3) x, y [m] and radius [m] of the band's bubbles, from the vehicle on; the radius is beyond the inscribed one."""
         return self._bubbles[: self._count].copy()
 
-    def command(self, now: LocalSituation) -> tuple[float, float] | None:
-        """Velocity (m/s, rad/s) for now; None where the band is broken: obstacles leave no way beside the path, or its arc touches."""
+    def command(self, now: LocalSituation) -> Twist | None:
+        """Velocity for now; None where the band is broken: obstacles leave no way beside the path, or its arc touches."""
         occupied = now.grids.values == LETHAL
         room = FreeRoom(distance_field(occupied), now.grids.frame, self._inscribed)
         if not np.array_equal(now.path, self._given):

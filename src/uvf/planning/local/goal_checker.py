@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from math import hypot
 
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import wrap
 from uvf.planning.local.path_following import turn_rate_over
 from uvf.planning.local.planner import Limits, State
@@ -43,6 +44,6 @@ class GoalChecker:
         self._reached = None
 
 
-def turn_to_heading(now: State, heading: float, limits: Limits) -> tuple[float, float]:
-    """Velocity (0 m/s, turn rate [rad/s]) that turns on the spot to ``heading`` [rad] by the shorter way, braking in time."""
-    return 0.0, turn_rate_over(wrap(heading - now.yaw), limits)
+def turn_to_heading(now: State, heading: float, limits: Limits) -> Twist:
+    """Velocity that turns on the spot to ``heading`` [rad] by the shorter way, braking in time."""
+    return Twist(0.0, turn_rate_over(wrap(heading - now.yaw), limits))

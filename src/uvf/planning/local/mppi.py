@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
+from uvf.maths.kinematics import Twist
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local import rollout
 from uvf.planning.local.planner import Limits, LocalSituation
@@ -22,6 +23,8 @@ AT_ONCE = 0.95
 """Share of the horizon after a contact from which no future is worth driving."""
 TURN_FIRST = (0.5, 1.0, 1.6, 2.2, 2.7, 3.2)
 """rad by which manoeuvres turn, on the spot or backing up, before they drive on."""
+SIDE_FOR = (0.2, 0.4, 0.6, 0.8, 1.0)
+"""Shares of the horizon for which manoeuvres go sideways."""
 SMOOTH = np.array((-3.0, 12.0, 17.0, 12.0, -3.0)) / 35.0
 """Savitzky-Golay of five points, quadratic."""
 
@@ -44,7 +47,7 @@ class MppiSettings:
     off_path_weight: float = 1.2
     reverse_weight: float = 6.0
     aside_weight: float = 6.0
-    """Of the way that the vehicle would make at full speed in the time that it needs to turn to the way on."""
+    """Of the way that the vehicle would make at full speed in the time that it needs to turn to the way on, as far as it must."""
     turn_weight: float = 0.1  # per largest turn rate
     near_weight: float = 15.0
     fast_weight: float = 6.0
@@ -63,9 +66,14 @@ class Mppi:
         self._limits, self._outline = limits, (footprint.sides(), footprint.circumscribed_radius)
         self._rng = np.random.default_rng(seed)
         shape = (POOL * settings.samples, settings.steps, 2)
-        self._noise = _coloured(self._rng.standard_normal(shape), settings.noise_memory).astype(np.float32)
-        self._plan: Floats = np.zeros((settings.steps, 2))
-        self._commands = np.empty((settings.samples, settings.steps, 2), dtype=np.float32)
+        noise = _coloured(self._rng.standard_normal(shape), settings.noise_memory)
+        sideways = np.zeros((*shape[:2], 1))
+        if limits.side_speed > 0.0:
+            sideways = _coloured(self._rng.standard_normal(sideways.shape), settings.noise_memory)
+            sideways[::2] = 0.0
+        self._noise = np.concatenate((noise, sideways), axis=2).astype(np.float32)
+        self._plan: Floats = np.zeros((settings.steps, 3))
+        self._commands = np.empty((settings.samples, settings.steps, 3), dtype=np.float32)
         self._found = np.empty((settings.samples, FEATURES), dtype=np.float32)
         self._weights = _weights(settings, limits)
         self.best: Floats32 = np.zeros(FEATURES, dtype=np.float32)
@@ -75,13 +83,17 @@ class Mppi:
         """Forgets the last plan."""
         self._plan[:] = 0.0
 
-    def command(self, now: LocalSituation) -> tuple[float, float] | None:
-        """Velocity (m/s, rad/s) for now; None where every future ends in a contact at once."""
+    def command(self, now: LocalSituation) -> Twist | None:
+        """Velocity for now; None where every future ends in a contact at once."""
         settings, grids, start = self.settings, now.grids, now.state
         limits = now.limits or self._limits
         others = Others(now.obstacles, *self._outline, settings.heed, settings.growth, settings.doubt)
         offset = int(self._rng.integers(0, (POOL - 1) * settings.samples + 1))
-        spread = (settings.speed_noise * (limits.max_speed - min(limits.min_speed, 0.0)), settings.turn_noise * limits.max_turn_rate)
+        spread = (
+            settings.speed_noise * (limits.max_speed - min(limits.min_speed, 0.0)),
+            settings.turn_noise * limits.max_turn_rate,
+            settings.speed_noise * limits.side_speed,
+        )
         _draw(self._plan, (self._noise, offset, spread), _manoeuvres(limits, settings), self._commands)
         _clip(self._commands, limits)
         roll_out(grids, start, self._commands, (settings.step, limits), others, self._found)
@@ -96,13 +108,13 @@ class Mppi:
             self._plan[:] = self._commands[best]
             roll_out(grids, start, self._commands[best : best + 1].copy(), (settings.step, limits), others, self._found[:1])
         self.best = self._found[0].copy()
-        speed, turn = float(self._plan[0, 0]), float(self._plan[0, 1])
+        velocity = Twist(*self._plan[0].tolist())
         self._plan[:-1] = self._plan[1:]
         stuck = self.best[rollout.COLLIDED] > AT_ONCE and not len(now.obstacles)  # what moves may yet pass by
-        return None if stuck else (speed, turn)
+        return None if stuck else velocity
 
     def _smooth(self) -> None:
-        for k in range(2):
+        for k in range(3):
             padded = np.concatenate(([self._plan[0, k]] * 2, self._plan[:, k], [self._plan[-1, k]] * 2))
             self._plan[:, k] = np.convolve(padded, SMOOTH, mode="valid")
 
@@ -115,31 +127,47 @@ def _weights(s: MppiSettings, limits: Limits) -> Floats32:
     weights[rollout.OFF_PATH], weights[rollout.REVERSED] = s.off_path_weight / way, s.reverse_weight / way
     weights[rollout.FAST], weights[rollout.CLOSE] = s.fast_weight, s.close_weight
     weights[rollout.TURNED] = s.turn_weight / limits.max_turn_rate
-    weights[rollout.ASIDE] = s.aside_weight / way * max(limits.max_speed / limits.max_turn_rate, limits.turning_radius)
+    turning = max(limits.max_speed / limits.max_turn_rate, limits.turning_radius) * (1.0 - limits.side_speed / limits.max_speed)
+    weights[rollout.ASIDE] = s.aside_weight / way * turning
     return weights
 
 
 @lru_cache(maxsize=4)
 def _manoeuvres(limits: Limits, settings: MppiSettings) -> Floats32:
-    """(k, steps, 2) commands that find a way where noise round the last plan does not: held steady, or turning first and then driving.
+    """(k, steps, 3) commands that find a way where noise round the last plan does not: held steady, or turning first and then driving.
 
     Who cannot turn on the spot backs up round a corner first.
     """
     speeds = np.linspace(limits.min_speed, limits.max_speed, 9)
     turns = np.linspace(-limits.max_turn_rate, limits.max_turn_rate, 13)
     pairs = np.stack(np.meshgrid(speeds, turns, indexing="ij"), axis=-1).reshape(-1, 1, 2)
-    steady = np.repeat(pairs, settings.steps, axis=1)
+    pairs = np.concatenate((pairs, np.zeros((*pairs.shape[:2], 1))), axis=-1)
+    steady = np.concatenate((_sideways(limits, settings.steps), np.repeat(pairs, settings.steps, axis=1)))
     turning, backing = [], min(limits.min_speed, 0.0) if limits.turning_radius > 0.0 else 0.0
     rate = min(limits.max_turn_rate, -backing / limits.turning_radius) if backing else limits.max_turn_rate
     for angle in TURN_FIRST:
         first = min(ceil(angle / rate / settings.step), settings.steps)
         for speed in (0.4 * limits.max_speed, 0.8 * limits.max_speed):
             for way in (-limits.max_turn_rate, limits.max_turn_rate):
-                commands = np.tile((speed, 0.0), (settings.steps, 1))
-                commands[:first] = backing, way
+                commands = np.tile((speed, 0.0, 0.0), (settings.steps, 1))
+                commands[:first] = backing, way, 0.0
                 turning.append(commands)
     both: Floats32 = np.concatenate((np.array(turning), steady)).astype(np.float32)[: settings.samples // 2]
     return both
+
+
+def _sideways(limits: Limits, steps: int) -> Floats:
+    """(k, steps, 3) commands to the sides, standing, ahead and back, for a while and then stopping; none of who cannot go there."""
+    if limits.side_speed == 0.0:
+        return np.zeros((0, steps, 3))
+    found = []
+    for speed in (0.0, 0.5 * limits.max_speed, 0.5 * min(limits.min_speed, 0.0)):
+        for side in (-limits.side_speed, limits.side_speed):
+            for share in SIDE_FOR:
+                commands = np.zeros((steps, 3))
+                commands[: ceil(share * steps)] = speed, 0.0, side
+                found.append(commands)
+    return np.array(found)
 
 
 def _coloured(white: Floats, memory: float) -> Floats:
@@ -151,13 +179,13 @@ def _coloured(white: Floats, memory: float) -> Floats:
 
 
 @compiled
-def _draw(plan: Floats, noises: tuple[Floats32, int, tuple[float, float]], manoeuvres: Floats32, out: Floats32) -> None:
+def _draw(plan: Floats, noises: tuple[Floats32, int, tuple[float, float, float]], manoeuvres: Floats32, out: Floats32) -> None:
     """The last plan itself, the manoeuvres, and the plan with noise: (of unit deviation, the row to begin with, deviations)."""
     noise, offset, spread = noises
     samples, steps = out.shape[0], out.shape[1]
     for k in range(samples):
         for i in range(steps):
-            for j in range(2):
+            for j in range(3):
                 if k == 0:
                     out[k, i, j] = plan[i, j]
                 elif k <= manoeuvres.shape[0]:
@@ -173,6 +201,7 @@ def _clip(commands: Floats32, limits: Limits) -> None:
         for i in range(commands.shape[1]):
             commands[k, i, 0] = min(max(commands[k, i, 0], limits.min_speed), limits.max_speed)
             commands[k, i, 1] = min(max(commands[k, i, 1], -limits.max_turn_rate), limits.max_turn_rate)
+            commands[k, i, 2] = min(max(commands[k, i, 2], -limits.side_speed), limits.side_speed)
 
 
 @compiled
@@ -184,3 +213,4 @@ def _average(commands: Floats32, weights: Floats32, plan: Floats) -> None:
             for i in range(commands.shape[1]):
                 plan[i, 0] += weights[k] * commands[k, i, 0]
                 plan[i, 1] += weights[k] * commands[k, i, 1]
+                plan[i, 2] += weights[k] * commands[k, i, 2]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
+from uvf.maths.kinematics import Twist
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import LETHAL
 from uvf.planning.local import rollout
@@ -94,13 +95,13 @@ class LookAhead:
         self._limits, self._outline = limits, (footprint.sides(), footprint.circumscribed_radius)
         self._found = np.empty((1, FEATURES), dtype=np.float32)
 
-    def collides(self, now: LocalSituation, command: tuple[float, float], seconds: float) -> bool:
-        """Whether the vehicle touches something within ``seconds`` if it follows ``command`` ([m/s], [rad/s]) as fast as it can.
+    def collides(self, now: LocalSituation, command: Twist, seconds: float) -> bool:
+        """Whether the vehicle touches something within ``seconds`` if it follows ``command`` as fast as it can.
 
         A vehicle that touches something from the start may get out of it.
         """
         steps = max(int(np.ceil(seconds / LOOK_STEP)), 1)
-        commands = np.full((1, steps, 2), command, dtype=np.float32)
+        commands = np.full((1, steps, 3), command, dtype=np.float32)
         others = Others(now.obstacles, *self._outline)
         roll_out(now.grids, now.state, commands, (LOOK_STEP, self._limits), others, self._found)
         return bool(self._found[0, rollout.COLLIDED] > 0.0)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from math import atan2, cos, hypot
 
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import wrap
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local.path_following import LookAhead, carrot
@@ -39,16 +40,16 @@ class PidFollower:
         """Forgets the errors that were summed up."""
         self._sum, self._last = 0.0, None
 
-    def command(self, now: LocalSituation) -> tuple[float, float] | None:
-        """Velocity (m/s, rad/s) for now; None where every part of it leads into something."""
+    def command(self, now: LocalSituation) -> Twist | None:
+        """Velocity for now; None where every part of it leads into something."""
         state, gains, limits = now.state, self.gains, self._limits
         x, y, left = carrot(now.path, state.x, state.y, gains.lookahead)
         error = wrap(atan2(y - state.y, x - state.x) - state.yaw) if hypot(x - state.x, y - state.y) > 0.02 else 0.0
         speed = min(gains.distance * max(left, hypot(x - state.x, y - state.y)), limits.max_speed) * max(cos(error), 0.0) ** 2
         turn = min(max(self._turn(error), -limits.max_turn_rate), limits.max_turn_rate)
         for share in SLOWER:
-            if not self._look.collides(now, (share * speed, turn), SECONDS):
-                return share * speed, turn
+            if not self._look.collides(now, wanted := Twist(share * speed, turn), SECONDS):
+                return wanted
         return None
 
     def _turn(self, error: float) -> float:

@@ -7,16 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
+from uvf.maths.kinematics import Twist
 from uvf.planning.local.window import Grids
 
 Floats = NDArray[np.float64]
 
 NOBODY: Floats = np.zeros((0, 5))
-STOP = (0.0, 0.0)
+STOP = Twist(0.0, 0.0)
 
 
 class Limits(NamedTuple):
-    """What a differential drive or a car can do."""
+    """What a vehicle can do."""
 
     min_speed: float  # m/s, below 0 where it may reverse
     max_speed: float  # m/s
@@ -26,6 +27,7 @@ class Limits(NamedTuple):
     lateral_acceleration: float  # m/s^2, of speed times turn rate, beyond which the wheels slide or the vehicle tips
     sideslip: float = 0.0  # s, of speed times turn rate: velocity at which wheels that skid in a turn slide out of it
     turning_radius: float = 0.0  # m, of the tightest circle; 0: it turns on the spot
+    side_speed: float = 0.0  # m/s, to either side; 0: it only goes ahead and back
 
 
 class State(NamedTuple):
@@ -36,6 +38,8 @@ class State(NamedTuple):
     yaw: float
     speed: float
     turn_rate: float
+    side: float = 0.0
+    """m/s, to the left."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +59,8 @@ class LocalSituation:
 class LocalPlanner(Protocol):
     """Chooses velocities at a fixed rate."""
 
-    def command(self, now: LocalSituation) -> tuple[float, float] | None:
-        """Velocity (m/s, rad/s); None where nothing that it knows of is free of contacts."""
+    def command(self, now: LocalSituation) -> Twist | None:
+        """Velocity; None where nothing that it knows of is free of contacts."""
         ...
 
     def reset(self) -> None:
@@ -71,11 +75,12 @@ def fastest_turn(limits: Limits, speed: float) -> float:
     return min(most, abs(speed) / limits.turning_radius) if limits.turning_radius > 0.0 else most
 
 
-def within(limits: Limits, now: State, wanted: tuple[float, float], dt: float) -> tuple[float, float]:
-    """The wanted velocity (m/s, rad/s) as far as it can be reached within ``dt`` [s], and driven without sliding."""
+def within(limits: Limits, now: State, wanted: Twist, dt: float) -> Twist:
+    """The wanted velocity as far as it can be reached within ``dt`` [s], and driven without sliding."""
     dv, dw = limits.acceleration * dt, limits.angular_acceleration * dt
     slowest = min(limits.min_speed, 0.0)  # who may not drive slowly may still stop
-    speed = min(max(wanted[0], now.speed - dv, slowest), now.speed + dv, limits.max_speed)
+    speed = min(max(wanted.linear, now.speed - dv, slowest), now.speed + dv, limits.max_speed)
+    side = min(max(wanted.lateral, now.side - dv, -limits.side_speed), now.side + dv, limits.side_speed)
     most = fastest_turn(limits, speed)
-    turn = min(max(wanted[1], now.turn_rate - dw), now.turn_rate + dw)
-    return speed, min(max(turn, -most), most)
+    turn = min(max(wanted.angular, now.turn_rate - dw), now.turn_rate + dw)
+    return Twist(speed, min(max(turn, -most), most), side)

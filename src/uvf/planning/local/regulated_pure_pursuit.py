@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from math import atan2, hypot, pi, sin, sqrt
 
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import wrap
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.local.path_following import LookAhead, carrot, distance_to_obstacle, turn_rate_over
@@ -52,8 +53,8 @@ class RegulatedPurePursuit:
         """Forgets that it was turning on the spot."""
         self._turning = False
 
-    def command(self, now: LocalSituation) -> tuple[float, float] | None:
-        """Velocity (m/s, rad/s) for now; None where the arc to the carrot touches something, at low speed and with a near carrot too."""
+    def command(self, now: LocalSituation) -> Twist | None:
+        """Velocity for now; None where the arc to the carrot touches something, at low speed and with a near carrot too."""
         s, state = self.settings, now.state
         room = max(distance_to_obstacle(now.grids, state.x, state.y, s.cost_scaling_dist + self._inscribed) - self._inscribed, 0.0)
         reach = self._reach(abs(state.speed), room)
@@ -62,14 +63,14 @@ class RegulatedPurePursuit:
             return STOP
         if abs(bearing) > (s.rotate_to_heading_end_angle if self._turning else s.rotate_to_heading_min_angle):
             turn = turn_rate_over(bearing, self._limits)
-            if not self._look.collides(now, (0.0, turn), abs(bearing / turn)):
+            if not self._look.collides(now, wanted := Twist(0.0, turn), abs(bearing / turn)):
                 self._turning = True
-                return 0.0, turn
+                return wanted
         self._turning = False
         for share, pace in ATTEMPTS:
             target = self._target(now, max(share * reach, s.min_lookahead_dist))
             wanted = self._pursue(target, pace, room)
-            seconds = min(s.max_allowed_time_to_collision_up_to_carrot, target[1] / max(abs(wanted[0]), 1e-6))
+            seconds = min(s.max_allowed_time_to_collision_up_to_carrot, target[1] / max(abs(wanted.linear), 1e-6))
             if not self._look.collides(now, wanted, seconds):
                 return wanted
         return None
@@ -86,7 +87,7 @@ class RegulatedPurePursuit:
         x, y, left = carrot(now.path, state.x, state.y, reach)
         return wrap(atan2(y - state.y, x - state.x) - state.yaw), hypot(x - state.x, y - state.y), left
 
-    def _pursue(self, target: Target, pace: float, room: float) -> tuple[float, float]:
+    def _pursue(self, target: Target, pace: float, room: float) -> Twist:
         """Velocity on the arc that ends in the target, backwards where that lies behind and the vehicle may."""
         bearing, distance, left = target
         back = abs(bearing) > pi / 2 and self._limits.min_speed < 0.0
@@ -94,7 +95,7 @@ class RegulatedPurePursuit:
         speed = pace * self._regulated(-self._limits.min_speed if back else self._limits.max_speed, abs(curvature), room)
         speed = min(speed, self._approach(speed, max(left, distance)))
         speed = -speed if back else speed
-        return speed, speed * curvature
+        return Twist(speed, speed * curvature)
 
     def _regulated(self, speed: float, curvature: float, room: float) -> float:
         """Speed [m/s] by curvature (equation 5), proximity (equation 6) and what turn rate and sideways acceleration allow."""

@@ -12,10 +12,11 @@ from uvf.planning.local.window import Bits, Grids
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
-Motion = tuple[float, float, float, float, float, float, float]
-"""x, y [m], yaw [rad], speed [m/s], turn rate [rad/s], cosine and sine of yaw."""
+Motion = tuple[float, float, float, float, float, float, float, float]
+"""x, y [m], yaw [rad], speed [m/s], turn rate [rad/s], cosine and sine of yaw, speed to the left [m/s]."""
 
 UNSEEN = 4.0
+SIDEWAYS = 0.1
 APART = 3.0  # cells on either side between which the way to go is compared
 STEEPEST = 40.0  # fall of the way to go beyond which one side of it lies where no way leads
 LAST = 0.5  # m
@@ -38,10 +39,11 @@ class Others(NamedTuple):
 FEATURES = 12
 COLLIDED, COST, WORST, TO_GO, MEAN_TO_GO, OFF_PATH, REVERSED, TURNED, NEAR, FAST, CLOSE, ASIDE = range(FEATURES)
 """Columns of what a rollout finds: share of the horizon [0..1] that comes after the first contact (0: none); mean cost [0..1]; largest
-cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards [m], ``UNSEEN`` times
-as much over unknown ground; mean turn rate [rad/s]; greatest nearness to moving obstacles [0..1, 1 = contact, exponential]; mean cost
-times the square of the share of the largest speed [0..1]; share of the horizon within the soft margin of an obstacle, weighed by 0.3
-and the share of the largest speed; angle [rad] at the end between the heading and the way on, less on the last half metre."""
+cost [0..254]; way to go at the end [m]; its mean [m]; mean distance from the path [m]; distance driven backwards and ``SIDEWAYS`` as
+much of that to the sides [m], ``UNSEEN`` times as much over unknown ground; mean turn rate [rad/s]; greatest nearness to moving
+obstacles [0..1, 1 = contact, exponential]; mean cost times the square of the share of the largest speed [0..1]; share of the horizon
+within the soft margin of an obstacle, weighed by 0.3 and the share of the largest speed; angle [rad] at the end between the heading
+and the way on, less on the last half metre."""
 
 
 @compiled
@@ -105,8 +107,8 @@ def _is_blocked(grids: Grids, x: float, y: float, yaw: float) -> bool:
 
 @compiled
 def _driven(motion: Motion, command: Floats32, dt: float, limits: Limits) -> Motion:
-    """The motion a step later, with the command (2,) followed as fast as the limits allow."""
-    x, y, yaw, speed, turn, cosine, sine = motion
+    """The motion a step later, with the command (3,) followed as fast as the limits allow."""
+    x, y, yaw, speed, turn, cosine, sine, side = motion
     wanted = min(max(float(command[0]), limits.min_speed), limits.max_speed)
     speed += min(max(wanted - speed, -limits.acceleration * dt), limits.acceleration * dt)
     most = fastest_turn(limits, speed)
@@ -114,13 +116,16 @@ def _driven(motion: Motion, command: Floats32, dt: float, limits: Limits) -> Mot
     turn += min(max(wanted - turn, -limits.angular_acceleration * dt), limits.angular_acceleration * dt)
     if limits.turning_radius > 0.0:
         turn = min(max(turn, -most), most)
+    if limits.side_speed > 0.0:
+        wanted = min(max(float(command[2]), -limits.side_speed), limits.side_speed)
+        side += min(max(wanted - side, -limits.acceleration * dt), limits.acceleration * dt)
     half = 0.5 * turn * dt
     cosine, sine = _turned(cosine, sine, half)
-    ahead, aside = speed * dt, -limits.sideslip * speed * turn * dt
+    ahead, aside = speed * dt, (side - limits.sideslip * speed * turn) * dt
     x += ahead * cosine - aside * sine
     y += ahead * sine + aside * cosine
     cosine, sine = _turned(cosine, sine, half)
-    return x, y, yaw + turn * dt, speed, turn, cosine, sine
+    return x, y, yaw + turn * dt, speed, turn, cosine, sine, side
 
 
 @compiled
@@ -130,7 +135,7 @@ def _predicted(state: State, horizon: int, step: tuple[float, Limits], others: O
     obstacles = others.obstacles
     discs = np.empty((horizon, obstacles.shape[0], 3))
     counts = np.zeros(horizon, dtype=np.int64)
-    fastest = max(abs(limits.min_speed), abs(limits.max_speed), abs(state.speed))
+    fastest = max(abs(limits.min_speed), abs(limits.max_speed), abs(state.speed)) + limits.side_speed
     for i in range(horizon):
         ahead = (i + 1) * dt
         for m in range(obstacles.shape[0]):
@@ -146,7 +151,7 @@ def _predicted(state: State, horizon: int, step: tuple[float, Limits], others: O
 @compiled
 def _closest(discs: Floats, count: int, others: Others, motion: Motion, most: float) -> float:
     """Distance [m] from the outline to the nearest of the discs, ``most`` at most, which is not below 0; at corners no more than that."""
-    x, y, _, _, _, cosine, sine = motion
+    x, y, _, _, _, cosine, sine, _ = motion
     closest = most
     for m in range(count):
         dx, dy = discs[m, 0] - x, discs[m, 1] - y
@@ -160,7 +165,7 @@ def _closest(discs: Floats, count: int, others: Others, motion: Motion, most: fl
 @compiled
 def _aside(grids: Grids, motion: Motion, to_go: float) -> float:
     """Angle [rad] between the heading and the direction in which the way to go falls, less where little of it is left."""
-    x, y, _, _, _, cosine, sine = motion
+    x, y, _, _, _, cosine, sine, _ = motion
     x, y = (x - grids.frame[0]) / grids.frame[2], (y - grids.frame[1]) / grids.frame[2]
     ahead = _sample(grids.to_go, x - APART, y) - _sample(grids.to_go, x + APART, y)
     left = _sample(grids.to_go, x, y - APART) - _sample(grids.to_go, x, y + APART)
@@ -180,20 +185,20 @@ def _roll(
     moving: tuple[Others, Floats, NDArray[np.int64]],
     out: Floats32,
 ) -> None:
-    """One rollout: fills ``out`` (FEATURES,) for commands (n, 2), among discs as ``_predicted`` gives them."""
+    """One rollout: fills ``out`` (FEATURES,) for commands (n, 3), among discs as ``_predicted`` gives them."""
     dt, limits = step
     others, discs, counts = moving
     x0, y0, per_metre = grids.frame[0], grids.frame[1], 1.0 / grids.frame[2]
     horizon = commands.shape[0]
     cost = worst = mean_to_go = off_path = back = turned = collided = fast = close = to_go = 0.0
     apart = np.inf  # least distance to what moves, in units of the doubt about where it is
-    motion = state.x, state.y, state.yaw, state.speed, state.turn_rate, np.cos(state.yaw), np.sin(state.yaw)
+    motion = state.x, state.y, state.yaw, state.speed, state.turn_rate, np.cos(state.yaw), np.sin(state.yaw), state.side
     slowness = 1.0 / limits.max_speed
     inside = _is_blocked(grids, state.x, state.y, state.yaw)
     for i in range(horizon):
         motion = _driven(motion, commands[i], dt, limits)
-        x, y, yaw, speed, turn, cosine, sine = motion
-        share = speed * slowness
+        x, y, yaw, speed, turn, cosine, sine, side = motion
+        share = (speed if side == 0.0 else np.hypot(speed, side)) * slowness
         across, up = (x - x0) * per_metre, (y - y0) * per_metre
         r, c = _cell_at(grids, across, up)
         if r >= 0:
@@ -224,6 +229,10 @@ def _roll(
         if speed < 0.0:
             r, c = _cell(grids, x - others.circumscribed_radius * cosine, y - others.circumscribed_radius * sine)
             back -= speed * dt * (1.0 if r >= 0 and grids.seen[r, c] else UNSEEN)
+        if side != 0.0:
+            far = others.circumscribed_radius if side > 0.0 else -others.circumscribed_radius
+            r, c = _cell(grids, x - far * sine, y + far * cosine)
+            back += SIDEWAYS * abs(side) * dt * (1.0 if r >= 0 and grids.seen[r, c] else UNSEEN)
     out[COLLIDED], out[COST], out[WORST] = collided, cost / (252.0 * horizon), worst
     out[TO_GO], out[MEAN_TO_GO], out[OFF_PATH] = to_go, mean_to_go / horizon, off_path / horizon
     out[REVERSED], out[TURNED], out[NEAR] = back, turned / horizon, np.exp(-apart)
@@ -233,9 +242,9 @@ def _roll(
 
 @compiled
 def roll_out(grids: Grids, state: State, commands: Floats32, step: tuple[float, Limits], others: Others, out: Floats32) -> None:
-    """Fills ``out`` (k, FEATURES) for the commands (k, n, 2) of speed [m/s] and turn rate [rad/s], each held for a step.
+    """Fills ``out`` (k, FEATURES) for commands (k, n, 3) of speed [m/s], turn rate [rad/s] and speed to the left [m/s], each held a step.
 
-    state: x, y, yaw, speed, turn rate in the window's frame; step: (duration [s], limits: the vehicle follows commands as fast as they
+    state: pose and velocity in the window's frame; step: (duration [s], limits: the vehicle follows commands as fast as they
     allow). After a contact a rollout stands still; a vehicle that touches something from the start may get out of it.
     """
     discs, counts = _predicted(state, commands.shape[1], step, others)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.compiled import compiled
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import wrap
 from uvf.planning.costmap.footprint import RobotFootprint
 from uvf.planning.costmap.inflation import LETHAL
@@ -56,8 +57,8 @@ class VfhPlus:
         self._shut[:] = False
         self._chosen = None
 
-    def command(self, now: LocalSituation) -> tuple[float, float] | None:
-        """Velocity (m/s, rad/s) for now; None where all directions are shut, or the ways into the open ones touch something."""
+    def command(self, now: LocalSituation) -> Twist | None:
+        """Velocity for now; None where all directions are shut, or the ways into the open ones touch something."""
         s, state = self.settings, now.state
         x, y, left = carrot(now.path, state.x, state.y, s.target_distance)
         target, distance = atan2(y - state.y, x - state.x), hypot(x - state.x, y - state.y)
@@ -114,19 +115,19 @@ class VfhPlus:
         inside = (target - right - half) % tau <= left - right - 2.0 * half
         return [right + half, left - half] + ([target] if inside else [])
 
-    def _steered(self, now: LocalSituation, direction: float, ahead: float) -> tuple[float, float] | None:
+    def _steered(self, now: LocalSituation, direction: float, ahead: float) -> Twist | None:
         """Velocity towards a direction with ``ahead`` [m] to go; None where its arc touches something."""
         s, limits, state = self.settings, self._limits, now.state
         error = wrap(direction - state.yaw)
         if abs(error) > s.turn_in_place:
-            turn = turn_rate_over(error, limits)
-            return None if self._look.collides(now, (0.0, turn), abs(error / turn)) else (0.0, turn)
+            spin = Twist(0.0, turn_rate_over(error, limits))
+            return None if self._look.collides(now, spin, abs(error / spin.angular)) else spin
         fastest = min(limits.max_speed, sqrt(limits.acceleration * max(ahead, 0.02))) * cos(0.5 * pi * abs(error) / s.turn_in_place)
         for pace in PACES:
             speed = pace * fastest
             most = min(limits.max_turn_rate, limits.lateral_acceleration / max(speed, 1e-3))
-            wanted = speed, copysign(min(most, TURN_GAIN * abs(error)), error)
-            if not self._look.collides(now, wanted, min(s.time_to_collision, abs(error / wanted[1]) if wanted[1] else np.inf)):
+            wanted = Twist(speed, copysign(min(most, TURN_GAIN * abs(error)), error))
+            if not self._look.collides(now, wanted, min(s.time_to_collision, abs(error / wanted.angular) if wanted.angular else np.inf)):
                 return wanted
         return None
 

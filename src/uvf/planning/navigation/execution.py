@@ -2,6 +2,7 @@
 
 from math import hypot
 
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2
 from uvf.planning.costmap.bumps import Bump
@@ -38,8 +39,8 @@ class Executor:
         if self._retreat is None:
             self._retreat = Retreat(t, pose, bump, self._turns_on_the_spot)
 
-    def step(self, t: float, pose: Pose2, velocity: tuple[float, float], directive: Directive) -> tuple[float, float]:
-        """Velocity (m/s, rad/s) at ``t`` [s]; the stop before obstacles has the last word in all that is done."""
+    def step(self, t: float, pose: Pose2, velocity: Twist, directive: Directive) -> Twist:
+        """Velocity at ``t`` [s]; the stop before obstacles has the last word in all that is done."""
         if directive.number != self.report.number:
             self._begin(pose, directive)
         if self._retreat is not None:
@@ -47,15 +48,13 @@ class Executor:
         if directive.action == Action.FOLLOW:
             result = self.controller.drive(pose, velocity, directive.path, directive.heading)
             self.report = Report(directive.number, result.how)
-            return result.speed, result.turn_rate
+            return result.velocity
         if directive.action == Action.STOP:
             self.report = Report(directive.number, Drive.NO_PATH, done=True)
             return self.controller.hold(pose, velocity)
         return self._move(t, pose, velocity, directive)
 
-    def _draw_back_on(
-        self, t: float, pose: Pose2, velocity: tuple[float, float], directive: Directive, retreat: Retreat
-    ) -> tuple[float, float]:
+    def _draw_back_on(self, t: float, pose: Pose2, velocity: Twist, directive: Directive, retreat: Retreat) -> Twist:
         self.report = Report(directive.number)
         if not retreat.is_over(t, pose):
             rolls_on = any(w * v < 0.0 and abs(v) > ROLLING for w, v in zip(retreat.wanted(), velocity, strict=True))
@@ -72,17 +71,17 @@ class Executor:
             self.controller.layer.clear(directive.clear_beyond, (pose[0], pose[1]))
             self.controller.hidden.clear(directive.clear_beyond, (pose[0], pose[1]))
 
-    def _move(self, t: float, pose: Pose2, velocity: tuple[float, float], directive: Directive) -> tuple[float, float]:
+    def _move(self, t: float, pose: Pose2, velocity: Twist, directive: Directive) -> Twist:
         self._turned += wrap(pose[2] - self._yaw)
         self._yaw = pose[2]
         if directive.action == Action.SPIN:
             done = abs(self._turned) >= abs(directive.amount)
-            wanted = (0.0, SPIN_RATE if directive.amount > 0 else -SPIN_RATE)
+            wanted = Twist(0.0, SPIN_RATE if directive.amount > 0 else -SPIN_RATE)
         else:
             backed = hypot(pose[0] - self._begun[0], pose[1] - self._begun[1])
             has_room = not self._turns_on_the_spot or self.controller.has_room_to_turn(pose)
             done = backed >= directive.amount and (has_room or backed >= MOST_BACKED * directive.amount)
-            wanted = (-BACK_UP_SPEED, 0.0)
+            wanted = Twist(-BACK_UP_SPEED, 0.0)
         if done:
             self.report = Report(directive.number, done=True)
             return self.controller.halt()

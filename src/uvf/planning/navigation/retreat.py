@@ -2,6 +2,7 @@
 
 from math import copysign, hypot
 
+from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2
 from uvf.planning.costmap.bumps import Bump
@@ -21,9 +22,9 @@ class Retreat:
         self._turns = turns_on_the_spot and abs(turn_rate) * FAR_ENOUGH > abs(speed) * TURNED_ENOUGH
         self._way = -copysign(1.0, turn_rate if self._turns else float(bump.points[:, 0].mean()))
 
-    def wanted(self) -> tuple[float, float]:
-        """Velocity (m/s, rad/s)."""
-        return (0.0, self._way * TURN_RATE) if self._turns else (self._way * SPEED, 0.0)
+    def wanted(self) -> Twist:
+        """Velocity."""
+        return Twist(0.0, self._way * TURN_RATE) if self._turns else Twist(self._way * SPEED, 0.0)
 
     def is_over(self, t: float, pose: Pose2) -> bool:
         """Whether the vehicle is off, or cannot get off."""
