@@ -100,3 +100,16 @@ def test_ways_and_turns_are_told_as_from_above(roll, pitch):
     ways, turning = inclination.seen_from_above(WheelTravel(1.0, 2.0, 3.0), rate)
     assert ways == pytest.approx((np.cos(pitch), 2.0 * np.cos(pitch), 3.0 * np.sqrt(1.0 - upward[1] ** 2)))
     assert turning == pytest.approx((rate[1] * np.sin(roll) + rate[2] * np.cos(roll)) / np.cos(pitch))
+
+
+def test_a_vehicle_that_rocks_as_it_stops_has_no_biased_gyroscope():
+    """It nods by 0.4 degrees onto its castors and lies still then, in stops of half a second; before, it stood for a second."""
+    inclination, force, standing = Inclination(), np.array((0.0, 0.0, GRAVITY)), WheelTravel(0.0, 0.0)
+    for _ in range(round(1.0 / DT)):
+        inclination.step(DT, np.array((0.002, -0.001, 0.0)), force, standing)
+    for _ in range(5):
+        for k in range(round(3.0 / DT)):
+            stops, rocks = round(2.4 / DT), 0.035 if 0 <= k - round(2.4 / DT) < round(0.2 / DT) else 0.0
+            ways = standing if k >= stops else WheelTravel(0.3 * DT, 0.3 * DT)
+            inclination.step(DT, np.array((0.002, rocks - 0.001, 0.0)), force, ways)
+    assert inclination._gyro_bias == pytest.approx((0.002, -0.001), abs=3e-4)

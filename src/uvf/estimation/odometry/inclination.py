@@ -21,7 +21,7 @@ FELT = 0.3  # m/s^2, 1 sigma of what is felt beside gravity and bias: skidding, 
 STRUCK, BLOW = 1.5, 0.2  # m/s^2 of difference, from which on it is a blow; s after which it is none, but ground that was not felt before
 LEVEL, KNOWN = 0.05, 0.4  # sine of a slope, below which it may be all bias; m/s^2, 1 sigma of gravity's parts from which on it is told
 STEEPEST = 0.6  # sine of a slope: more is a vehicle that is spun about, or falls
-SETTLING = 1.0  # s at rest in which the gyroscope's mean counts for its bias
+SETTLED, KEPT = 0.5, 20.0  # s at rest after which a vehicle has rocked to its end, and s of rest whose mean is the gyroscope's bias
 FAST, SLOW, STEADY = 0.1, 0.5, 0.1  # s, of two means of what is felt at rest; m/s^2 by which they differ where it is being tilted
 
 
@@ -40,7 +40,7 @@ class Inclination:
         """Gravity's parts forward and left, and the biases of the accelerometer there [m/s^2]."""
         self._p = np.diag((STEEP, STEEP, BIAS, BIAS)) ** 2
         self._velocity, self._struck_for = np.zeros(2), 0.0
-        self._gyro_bias = np.zeros(2)
+        self._gyro_bias, self._rested, self._stood_for = np.zeros(2), 0.0, 0.0
         self._means: tuple[Floats, Floats] | None = None
 
     def step(self, dt: float, rate: Floats, force: Floats, ways: WheelTravel) -> Tilting:
@@ -88,15 +88,20 @@ class Inclination:
         return WheelTravel(ways.left * shorter, ways.right * shorter, ways.aside * sqrt(1.0 - aside * aside)), turning
 
     def _rest(self, dt: float, rate: Floats, force: Floats, stands: bool) -> None:
-        """Learns the gyroscope's biases while the vehicle stands and is not tilted: what is felt stays the same."""
+        """Learns the gyroscope's biases while the vehicle stands and is not tilted: what is felt stays the same.
+
+        A vehicle that stops rocks on its castors for a moment, which a short stop must not take for a bias.
+        """
+        self._stood_for = self._stood_for + dt if stands else 0.0
         if not stands:
             self._means = None
             return
         fast, slow = self._means or (force[:2], force[:2])
         fast, slow = fast + (force[:2] - fast) * min(dt / FAST, 1.0), slow + (force[:2] - slow) * min(dt / SLOW, 1.0)
         self._means = fast, slow
-        if np.abs(fast - slow).max() < STEADY:
-            self._gyro_bias += (rate[:2] - self._gyro_bias) * min(dt / SETTLING, 1.0)
+        if self._stood_for >= SETTLED and np.abs(fast - slow).max() < STEADY:
+            self._rested = min(self._rested + dt, KEPT)
+            self._gyro_bias += (rate[:2] - self._gyro_bias) * min(dt / self._rested, 1.0)
 
     def _begin_anew(self) -> None:
         """Nothing is known of the slope."""
