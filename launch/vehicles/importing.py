@@ -42,7 +42,6 @@ TRACTION = 2.5  # m/s^2
 CALIBRATED = 0.015  # of a turn, from which on the effective track is measured
 STEERING_RATE = 2.0  # rad/s
 CAR_HZ = 400.0  # Hz of physics: with 200 the light wheels of cars hop when they brake in a curve
-PULL, SCRUBBING = 0.4, 0.6  # of the weight: what each motor pulls at a stand, of wheels that roll and of wheels that scrub
 MARGIN = 3.0  # of a motor's speed without load over the largest that is asked for
 ROUND = np.column_stack([f(np.linspace(0, 2 * np.pi, 180, endpoint=False)) for f in (np.cos, np.sin, np.zeros_like)])
 
@@ -176,8 +175,8 @@ def _ground(name: str, wheels: DriveWheels, model: UrdfModel, limits: StatedLimi
         "max_linear_acceleration": acceleration,
         "max_angular_acceleration": float(f"{min(limits.angular_acceleration or spin, 2 * TRACTION / wheels.turning_track):.3g}"),
         "motor": {
-            "stall_torque": float(f"{(SCRUBBING if wheels.kind == 'skid_steer' else PULL) * mass * GRAVITY * wheels.radius:.3g}"),
-            "no_load_speed": float(f"{MARGIN * _fastest_wheel(fastest, turning, wheels) / wheels.radius:.3g}"),
+            "stall_torque": float(f"{0.4 * mass * GRAVITY * wheels.radius:.3g}"),
+            "no_load_speed": float(f"{MARGIN * _fastest_wheel(fastest, limits, wheels) / wheels.radius:.3g}"),
             "lag": 0.03,
         },
         **({"physics_hz": CAR_HZ} if wheels.steered is not None else {}),
@@ -229,7 +228,6 @@ def _ring(wheels: DriveWheels) -> dict[str, dict[str, float]]:
     return found
 
 
-def _fastest_wheel(fastest: float, turning: float, wheels: DriveWheels) -> float:
-    """m/s of a wheel's tread at these limits [m/s, rad/s], alone or, of wheels that scrub and then need their torque, together."""
-    outside = turning * wheels.turning_track / 2
-    return fastest + outside if wheels.kind == "skid_steer" else max(fastest, outside)
+def _fastest_wheel(fastest: float, limits: StatedLimits, wheels: DriveWheels) -> float:
+    """m/s of a wheel's tread, straight on or turning on the spot."""
+    return max(fastest, (limits.angular or 0.0) * wheels.turning_track / 2)
