@@ -230,3 +230,14 @@ def test_a_robot_keeps_its_pictures_for_cameras_and_page(tmp_path):
 def test_its_ghost_has_one_colour(tmp_path):
     parts = bodies.rover_parts(load_urdf(robot(tmp_path)), (), pictures=False)[bodies.FAST]
     assert not parts.pictured and len(parts.plain) > 3
+
+
+def test_a_picture_of_any_size_is_brought_to_a_small_one_before_it_goes_to_a_browser(tmp_path):
+    mesh = load_textured(poster(tmp_path / "poster.obj", at="poster.png", size=3000))
+    assert max(mesh.picture.size) == LARGEST
+
+
+def test_a_picture_that_would_fill_the_memory_is_none(tmp_path, monkeypatch):
+    path = poster(tmp_path / "poster.obj", at="poster.png", size=100)
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 1000)
+    assert load_textured(path) is None

@@ -15,7 +15,7 @@ from uvf.models.shapes.solid import Solid
 
 Floats = NDArray[np.float64]
 LARGEST = 512  # px a side
-UNREADABLE = (OSError, ValueError, KeyError, IndexError, TypeError, AttributeError, AssertionError)
+UNREADABLE = (OSError, ValueError, KeyError, IndexError, TypeError, AttributeError, AssertionError, Image.DecompressionBombError)
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ def load_textured(path: Path) -> TexturedMesh | None:
         uv = getattr(mesh.visual, "uv", None)
         if picture is None or uv is None or len(uv) != len(mesh.vertices):
             return None
-        return TexturedMesh(np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces), np.asarray(uv), picture.convert("RGB"))
+        return TexturedMesh(np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces), np.asarray(uv), _small(picture))
     except UNREADABLE:
         return None
 
@@ -54,9 +54,7 @@ def textured(solid: Solid) -> TexturedMesh | None:
 
 def write_textured(mesh: TexturedMesh, path: Path) -> None:
     """Writes ``path`` (.obj), the .mtl and .jpg beside it of the same name; the picture no larger than ``LARGEST``."""
-    picture: Image.Image = mesh.picture.convert("RGB")
-    picture.thumbnail((LARGEST, LARGEST))
-    picture.save(path.with_suffix(".jpg"), quality=85)
+    _small(mesh.picture).save(path.with_suffix(".jpg"), quality=85)
     path.with_suffix(".mtl").write_text(f"newmtl picture\nKd 1 1 1\nmap_Kd {path.stem}.jpg\n", encoding="utf-8")
     normals = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).vertex_normals
     lines = [f"mtllib {path.stem}.mtl"]
@@ -65,3 +63,10 @@ def write_textured(mesh: TexturedMesh, path: Path) -> None:
     lines.append("usemtl picture")
     lines += ["f " + " ".join(f"{i}/{i}/{i}" for i in face) for face in (mesh.faces + 1).tolist()]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _small(picture: Image.Image) -> Image.Image:
+    """A picture in RGB, no side longer than ``LARGEST``."""
+    small = picture.convert("RGB")
+    small.thumbnail((LARGEST, LARGEST))
+    return small
