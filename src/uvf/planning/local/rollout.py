@@ -177,6 +177,21 @@ def _aside(grids: Grids, motion: Motion, to_go: float) -> float:
 
 
 @compiled
+def _backed(grids: Grids, motion: Motion, radius: float, dt: float) -> float:
+    """What a step counts as driven backwards [m]: more where the ground at its end is unknown; radius: [m], of its outline."""
+    x, y, _, speed, _, cosine, sine, side = motion
+    back = 0.0
+    if speed < 0.0:
+        r, c = _cell(grids, x - radius * cosine, y - radius * sine)
+        back -= speed * dt * (1.0 if r >= 0 and grids.seen[r, c] else UNSEEN)
+    if side != 0.0:
+        far = radius if side > 0.0 else -radius
+        r, c = _cell(grids, x - far * sine, y + far * cosine)
+        back += SIDEWAYS * abs(side) * dt * (1.0 if r >= 0 and grids.seen[r, c] else UNSEEN)
+    return back
+
+
+@compiled
 def _roll(
     grids: Grids,
     state: State,
@@ -197,7 +212,7 @@ def _roll(
     inside = _is_blocked(grids, state.x, state.y, state.yaw)
     for i in range(horizon):
         motion = _driven(motion, commands[i], dt, limits)
-        x, y, yaw, speed, turn, cosine, sine, side = motion
+        x, y, yaw, speed, turn, _, _, side = motion
         share = (speed if side == 0.0 else np.hypot(speed, side)) * slowness
         across, up = (x - x0) * per_metre, (y - y0) * per_metre
         r, c = _cell_at(grids, across, up)
@@ -226,13 +241,8 @@ def _roll(
             off_path += grids.off_path[r, c]
         mean_to_go += to_go
         turned += abs(turn)
-        if speed < 0.0:
-            r, c = _cell(grids, x - others.circumscribed_radius * cosine, y - others.circumscribed_radius * sine)
-            back -= speed * dt * (1.0 if r >= 0 and grids.seen[r, c] else UNSEEN)
-        if side != 0.0:
-            far = others.circumscribed_radius if side > 0.0 else -others.circumscribed_radius
-            r, c = _cell(grids, x - far * sine, y + far * cosine)
-            back += SIDEWAYS * abs(side) * dt * (1.0 if r >= 0 and grids.seen[r, c] else UNSEEN)
+        if speed < 0.0 or side != 0.0:
+            back += _backed(grids, motion, others.circumscribed_radius, dt)
     out[COLLIDED], out[COST], out[WORST] = collided, cost / (252.0 * horizon), worst
     out[TO_GO], out[MEAN_TO_GO], out[OFF_PATH] = to_go, mean_to_go / horizon, off_path / horizon
     out[REVERSED], out[TURNED], out[NEAR] = back, turned / horizon, np.exp(-apart)
