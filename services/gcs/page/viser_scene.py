@@ -11,6 +11,7 @@ from viser import _messages
 
 from services.gcs.state.vehicle_model import DisplayPose
 from services.gcs.view.drawing import Axes, Boxes, FloorPicture, MeshNode, Node, Points, Polyline, TextNode, TexturedNode
+from uvf.models.shapes.textured import TexturedMesh
 
 Floats = NDArray[np.float64]
 
@@ -109,7 +110,7 @@ class ViserScene:
         return handle
 
     def _add_textured(self, name: str, node: TexturedNode) -> Any:
-        handle = self._server.scene.add_mesh_trimesh(name, glb_mesh(node))
+        handle = self._server.scene.add_mesh_trimesh(name, glb_mesh(node.mesh))
         if node.selects:
             handle.on_click(self._picking(node.selects))
         return handle
@@ -178,8 +179,8 @@ def _f32(points: Floats) -> NDArray[np.float32]:
     return np.ascontiguousarray(points, dtype=np.float32)
 
 
-def glb_mesh(node: TexturedNode) -> trimesh.Trimesh:
+def glb_mesh(mesh: TexturedMesh) -> trimesh.Trimesh:
     """As it goes to a browser: dull, seen from both sides."""
     made: Any = trimesh.visual
-    look = made.material.PBRMaterial(baseColorTexture=node.picture, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True)
-    return trimesh.Trimesh(node.vertices, node.faces, visual=made.TextureVisuals(uv=node.uv, material=look), process=False)
+    look = made.material.PBRMaterial(baseColorTexture=mesh.picture, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True)
+    return trimesh.Trimesh(mesh.vertices, mesh.faces, visual=made.TextureVisuals(uv=mesh.uv, material=look), process=False)

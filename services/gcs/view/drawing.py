@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from services.gcs.actions.page import PageAction
 from services.gcs.state.vehicle_model import DisplayPose
 from services.gcs.view.markup import Html
+from uvf.models.shapes.textured import TexturedMesh
 
 Floats = NDArray[np.float64]
 Colour = tuple[int, int, int]
@@ -29,12 +30,9 @@ class MeshNode:
 
 @dataclass(frozen=True, eq=False)
 class TexturedNode:
-    """A mesh under a picture. vertices: (n, 3) [m, parent's frame]; faces: (m, 3); uv: (n, 2), v up; picture: RGB, of PIL."""
+    """A mesh under a picture, its vertices [m, parent's frame]."""
 
-    vertices: Floats
-    faces: NDArray[np.int64]
-    uv: Floats
-    picture: Any
+    mesh: TexturedMesh
     selects: str = ""
     """A click on it selects this vehicle."""
 

@@ -178,8 +178,8 @@ def test_a_picture_of_the_world_shows_it_cut_open(tmp_path):
 def test_on_the_page_it_is_a_mesh_under_its_picture(tmp_path):
     world, _ = gallery(tmp_path, hanging(), extra=model("second", hanging(), "<pose>4 5 0 0 0 0</pose>"))
     (node,) = [node for name, node in scenery(world).items() if name.startswith("/world/pictures")]
-    assert isinstance(node, TexturedNode) and node.vertices.max(axis=0) == pytest.approx((4.0, 6.0, 2.0))
-    mesh = trimesh.load(trimesh.util.wrap_as_stream(glb_mesh(node).export(file_type="glb")), file_type="glb", force="mesh")
+    assert isinstance(node, TexturedNode) and node.mesh.vertices.max(axis=0) == pytest.approx((4.0, 6.0, 2.0))
+    mesh = trimesh.load(trimesh.util.wrap_as_stream(glb_mesh(node.mesh).export(file_type="glb")), file_type="glb", force="mesh")
     sampled = mesh.visual.to_color().vertex_colors[:, :3].astype(int)
     assert {tuple(np.round(c / 255).astype(int)) for c in sampled} == {(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)}
 

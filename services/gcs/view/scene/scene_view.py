@@ -7,14 +7,14 @@ from numpy.typing import NDArray
 
 from services.gcs.state.state import Model
 from services.gcs.state.vehicle_model import DisplayPose, VehicleModel
-from services.gcs.view.drawing import Colour, Node
+from services.gcs.view.drawing import Colour, Node, TexturedNode
 from services.gcs.view.scene import bodies
 from services.gcs.view.scene.estimate_layers import EstimateLayers
 from services.gcs.view.scene.map_layers import MapLayers
 from services.gcs.view.scene.moving_links import MovingLinks
 from services.gcs.view.scene.moving_parts import MovingParts
 from services.gcs.view.scene.node_cache import NodeCache
-from services.gcs.view.scene.scenery import coloured, moving, places_of, rgb_of, scenery, textured_node
+from services.gcs.view.scene.scenery import coloured, moving, places_of, rgb_of, scenery
 from services.gcs.view.scene.spawned import Spawned
 from services.gcs.view.scene.way_layers import WayLayers
 from uvf.models.aircraft.shape import AircraftShape, aircraft_shape
@@ -116,7 +116,7 @@ def _body(v: VehicleModel, shape: AircraftShape | None) -> tuple[dict[str, Node]
     drawn: dict[str, Node] = {}
     for name, group in parts.items():
         drawn |= {f"{name}/{i}".lstrip("/"): node for i, node in coloured(group.plain, rgb_of(v.colour), v.name).items()}
-        drawn |= {f"{name}/picture_{i}".lstrip("/"): textured_node([mesh], v.name) for i, mesh in enumerate(group.pictured)}
+        drawn |= {f"{name}/picture_{i}".lstrip("/"): TexturedNode(mesh, v.name) for i, mesh in enumerate(group.pictured)}
     return drawn, moves
 
 

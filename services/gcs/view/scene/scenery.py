@@ -16,7 +16,7 @@ from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.mesh_parts import MeshPart, box, joined
 from uvf.models.shapes.solid import Solid, pose_at
-from uvf.models.shapes.textured import TexturedMesh, textured
+from uvf.models.shapes.textured import TexturedMesh, joined_textured, textured
 from uvf.models.world.cutaway import cut_height, cut_open, cut_open_textured
 from uvf.models.world.file import Wall, WorldFile
 from uvf.models.world.geometry import WALL, hills, seen, solids
@@ -100,15 +100,7 @@ def _pictured(name: str, meshes: Sequence[tuple[Path | None, TexturedMesh]], top
         there = cut_open_textured(mesh, top) if mesh.vertices[:, 2].max() > top else mesh
         if len(there.faces):
             by_file.setdefault(file, []).append(there)
-    return {f"{name}/{i}": textured_node(group) for i, group in enumerate(by_file.values())}
-
-
-def textured_node(group: Sequence[TexturedMesh], selects: str = "") -> TexturedNode:
-    """Meshes under one picture; ``selects``: the vehicle that a click selects."""
-    offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in group[:-1])])
-    faces = np.vstack([mesh.faces + offset for mesh, offset in zip(group, offsets, strict=True)])
-    vertices, uv = (np.vstack([getattr(mesh, part) for mesh in group]) for part in ("vertices", "uv"))
-    return TexturedNode(vertices, faces, uv, group[0].picture, selects)
+    return {f"{name}/{i}": TexturedNode(joined_textured(group)) for i, group in enumerate(by_file.values())}
 
 
 def merge(parts: list[MeshPart], colour: Colour, selects: str = "") -> MeshNode:

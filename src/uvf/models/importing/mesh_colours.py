@@ -30,10 +30,10 @@ def colour_groups(meshes: Sequence[Any]) -> list[tuple[Any, Colour | None]]:
     coloured = [(mesh, face_colours(mesh)) for mesh in meshes if len(mesh.faces)]
     bare = [mesh for mesh, colours in coloured if colours is None]
     painted = [(mesh, colours) for mesh, colours in coloured if colours is not None]
-    groups: list[tuple[Any, Colour | None]] = [(_joined(bare), None)] if bare else []
+    groups: list[tuple[Any, Colour | None]] = [(joined(bare), None)] if bare else []
     if not painted:
         return groups
-    whole = _joined([mesh for mesh, _ in painted])
+    whole = joined([mesh for mesh, _ in painted])
     palette, numbers = _palette(np.concatenate([colours for _, colours in painted]))
     for k, (r, g, b) in enumerate((palette / 255).tolist()):
         if (numbers == k).any():
@@ -60,7 +60,8 @@ def face_colours(mesh: Any) -> NDArray[np.uint8] | None:
     return None if rgb is None else np.tile(np.round(rgb * 255).astype(np.uint8), (len(mesh.faces), 1))
 
 
-def _joined(meshes: Sequence[Any]) -> Any:
+def joined(meshes: Sequence[Any]) -> Any:
+    """Meshes as one without colours: joining those too would pack all pictures into one, which is slow."""
     plain = [trimesh.Trimesh(mesh.vertices, mesh.faces, process=False) for mesh in meshes]
     return trimesh.util.concatenate(plain)
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from trimesh.resolvers import FilePathResolver
 
-from uvf.models.importing.mesh_colours import mean_colour
+from uvf.models.importing.mesh_colours import joined, mean_colour
 from uvf.models.importing.mesh_looks import looks_of
 from uvf.models.importing.notes import Notes
 from uvf.models.lfs_pointer import refuse_pointer
@@ -70,9 +70,10 @@ class MeshStore:
         """Copies ``source`` as an STL file; returns its name in the world's folder. Raises BadInput when it cannot be read."""
         key = (source.resolve(), wanted)
         if key not in self._written:
-            loaded = self._load(source, wanted)
-            loaded.apply_transform(np.diag((*wanted.scale, 1.0)))
-            self._written[key] = self.write(loaded, source.stem + (f"_{wanted.submesh}" if wanted.submesh else ""))
+            whole = joined(self._placed(source, wanted))
+            if len(whole.faces) > HEAVY:
+                self._notes.add(f"meshes of more than {HEAVY} triangles make everything slow; simplify them", source.name)
+            self._written[key] = self.write(whole, source.stem + (f"_{wanted.submesh}" if wanted.submesh else ""))
         return self._written[key]
 
     def drawn(self, source: Path, wanted: RequestedMesh, picture: Path | None = None, sparing: bool = False) -> list[DrawnFile]:
@@ -109,12 +110,15 @@ class MeshStore:
         """The meshes of a file in metres, where they are wanted, each with its own colours."""
         scene = self._scene(source)
         try:
-            meshes = self._part(scene, wanted.submesh, source).dump()
+            parts = self._part(scene, wanted.submesh, source).dump()
+            meshes = [part for part in parts if isinstance(part, trimesh.Trimesh) and len(part.faces)]
             to = self._metres_from_file(source)
         except UNREADABLE as error:
             raise BadInput(f"{source}: cannot be read as a mesh: {' '.join(str(error).split())}; export it anew") from error
-        if not any(len(mesh.faces) for mesh in meshes):
+        if not meshes:
             raise BadInput(f"{source}: no triangles in it")
+        if min(abs(side) for side in wanted.scale) < FLATTEST:
+            raise BadInput(f"{source}: a scale of {' '.join(f'{side:g}' for side in wanted.scale)} leaves nothing of it")
         corners = np.array([mesh.apply_transform(to).bounds for mesh in meshes]).reshape(-1, 3)
         place = np.diag((*wanted.scale, 1.0))
         if wanted.centred:
@@ -159,24 +163,6 @@ class MeshStore:
             return load_with_pictures(source)
         except UNREADABLE as error:
             raise BadInput(f"{source}: cannot be read as a mesh: {' '.join(str(error).split())}; export it anew") from error
-
-    def _load(self, source: Path, wanted: RequestedMesh) -> Any:
-        scene = self._scene(source)
-        try:
-            whole = self._part(scene, wanted.submesh, source).to_mesh()
-            metres = self._metres_from_file(source)
-        except UNREADABLE as error:
-            raise BadInput(f"{source}: cannot be read as a mesh: {' '.join(str(error).split())}; export it anew") from error
-        if len(whole.faces) == 0:
-            raise BadInput(f"{source}: no triangles in it")
-        if min(abs(side) for side in wanted.scale) < FLATTEST:
-            raise BadInput(f"{source}: a scale of {' '.join(f'{side:g}' for side in wanted.scale)} leaves nothing of it")
-        whole.apply_transform(metres)
-        if wanted.centred:
-            whole.apply_translation(-whole.bounds.mean(axis=0))
-        if len(whole.faces) > HEAVY:
-            self._notes.add(f"meshes of more than {HEAVY} triangles make everything slow; simplify them", source.name)
-        return whole
 
     def _part(self, scene: Any, submesh: str, source: Path) -> Any:
         """Only the geometry of that name, or whose node is called so; without one, all."""

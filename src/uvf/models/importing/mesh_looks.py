@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.models.importing.mesh_colours import colour_groups, picture_of
-from uvf.models.shapes.textured import TexturedMesh
+from uvf.models.shapes.textured import TexturedMesh, joined_textured
 from uvf.models.world.file import Colour
 
 SAMPLED = 16  # px a side, in which pictures are compared
@@ -16,22 +16,15 @@ PLAIN = 6.0  # of 255: a picture that varies less is a colour
 
 def looks_of(meshes: Sequence[Any], picture: Any = None) -> tuple[list[TexturedMesh], list[tuple[Any, Colour | None]]]:
     """The faces that have a picture, a mesh for each picture, and the others, a mesh for each colour. picture: laid over all of them."""
-    found: dict[bytes, list[tuple[Any, Any]]] = {}
+    found: dict[bytes, list[TexturedMesh]] = {}
     plain = []
     for mesh in (m for m in meshes if len(m.faces)):
         uv, laid = getattr(mesh.visual, "uv", None), picture or (picture_of(mesh.visual) if mesh.visual.defined else None)
         if laid is None or uv is None or len(uv) != len(mesh.vertices) or not _varies(laid):
             plain.append(mesh)
         else:
-            found.setdefault(_thumb(laid).tobytes(), []).append((mesh, laid))
-    return [_joined(group) for group in found.values()], colour_groups(plain)
-
-
-def _joined(group: Sequence[tuple[Any, Any]]) -> TexturedMesh:
-    offsets = np.cumsum([0, *(len(mesh.vertices) for mesh, _ in group[:-1])])
-    vertices = np.vstack([mesh.vertices for mesh, _ in group])
-    faces = np.vstack([np.asarray(mesh.faces) + offset for (mesh, _), offset in zip(group, offsets, strict=True)])
-    return TexturedMesh(vertices, faces, np.vstack([np.asarray(mesh.visual.uv)[:, :2] for mesh, _ in group]), group[0][1])
+            found.setdefault(_thumb(laid).tobytes(), []).append(TexturedMesh(mesh.vertices, mesh.faces, uv[:, :2], laid))
+    return [joined_textured(group) for group in found.values()], colour_groups(plain)
 
 
 def _thumb(picture: Any) -> NDArray[np.uint8]:

@@ -1,5 +1,6 @@
 """Meshes with a picture laid over them: an OBJ file, its MTL file, and the picture that this names."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -50,6 +51,14 @@ def textured(solid: Solid) -> TexturedMesh | None:
     if mesh is None:
         return None
     return replace(mesh, vertices=mesh.vertices * np.array(solid.size) @ matrix(solid.orientation).T + solid.position)
+
+
+def joined_textured(meshes: Sequence[TexturedMesh]) -> TexturedMesh:
+    """Meshes under one picture, that of the first, as one mesh."""
+    offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
+    faces = np.vstack([mesh.faces + offset for mesh, offset in zip(meshes, offsets, strict=True)])
+    vertices, uv = np.vstack([mesh.vertices for mesh in meshes]), np.vstack([mesh.uv for mesh in meshes])
+    return TexturedMesh(vertices, faces, uv, meshes[0].picture)
 
 
 def write_textured(mesh: TexturedMesh, path: Path) -> None:
