@@ -59,8 +59,7 @@ def needed(site: Scenario) -> list[Kind]:
     """The service kinds that have work in a mission."""
     kinds: set[str] = {member.file.kind for member in site.members.values()}
     asked = {name for member in site.members.values() for name in member.file.params}
-    mapping = [m for m in site.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None]
-    kinds |= {"team"} if len(mapping) > 1 else set()
+    kinds |= {"team"} if len(site.mapping) > 1 else set()
     kinds |= {"program"} if any(member.entry.program for member in site.members.values()) else set()
     kinds |= {"tasks"} if site.mission.tasks else set()
     return [k for k in KINDS if k.needs in ("any", *kinds) or (k.needs == "asked" and k.name in asked)]

@@ -57,6 +57,9 @@ def _about_vehicles(condition: TaskCondition) -> Iterator[tuple[Holds, str]]:
         yield _is_low(condition.charge_below), f"has less than {100 * condition.charge_below:g} % of its charge"
     if condition.explored is not None:
         yield _has_explored(condition.explored), f"has explored {100 * condition.explored:g} %"
+    if condition.merged is not None:
+        merged = condition.merged
+        yield lambda now, vehicle: _is_merged(now, vehicle) is merged, "has a map that is one with another" if merged else "has a map alone"
 
 
 def _is_at(at: AtPlace) -> Holds:
@@ -108,3 +111,8 @@ def _has_explored(share: float) -> Holds:
         return nav is not None and nav.explored >= share
 
     return holds
+
+
+def _is_merged(now: TeamSituation, vehicle: str) -> bool:
+    of_others = (place for place in now.now.map_place.values() if place.child_frame_id != place.parent_frame_id)
+    return any(f"{vehicle}/map" in (place.child_frame_id, place.parent_frame_id) for place in of_others)

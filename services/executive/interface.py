@@ -8,6 +8,7 @@ from schemas.messages import (
     DriveCommand,
     Event,
     FollowRequest,
+    FrameTransform,
     GoalRequest,
     Grid,
     MapReply,
@@ -36,6 +37,7 @@ class Inputs(Reads):
     pose: dict[str, PoseInFrame] = each_vehicle(topics.POSE)
     status: dict[str, VehicleStatus] = each_vehicle(topics.STATUS)
     nav: dict[str, NavStatus] = each_vehicle(topics.NAV_STATUS)
+    map_place: dict[str, FrameTransform] = each_vehicle(topics.TEAM_PLACE)
     detections: dict[str, Detections] = each_vehicle(topics.DETECTIONS)
     progress: dict[str, MissionProgress] = each_vehicle(topics.PROGRESS)
     told: dict[str, list[Event]] = each_vehicle(every(topics.EVENTS.by("planner")))

@@ -10,7 +10,7 @@ from uvf.slam.merging.team import Team
 
 def build(site: Scenario) -> list[ServiceInstance]:
     """The merging service; empty where fewer than two vehicles draw maps."""
-    names = tuple(m.name for m in site.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None)
+    names = tuple(member.name for member in site.mapping)
     if len(names) < 2:
         return []
     warm_up()

@@ -15,7 +15,15 @@ from uvf.models.mission.extending import merge
 from uvf.models.mission.faults import check_parts
 from uvf.models.mission.file import MissionFile, Vehicle, load_mission
 from uvf.models.mission.fixtures import furnished
-from uvf.models.mission.task_needs import check_batteries, check_drivers, check_explorers, check_finders, check_heights, check_shares
+from uvf.models.mission.task_needs import (
+    check_batteries,
+    check_drivers,
+    check_explorers,
+    check_finders,
+    check_heights,
+    check_merging,
+    check_shares,
+)
 from uvf.models.params import Params
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.world.file import WorldFile, load_world
@@ -58,6 +66,11 @@ class Scenario:
     def of_kind(self, kind: str) -> Iterator[MissionVehicle]:
         """The vehicles of one kind: ``ground`` or ``fixed_wing``."""
         return (m for m in self.members.values() if m.file.kind == kind)
+
+    @property
+    def mapping(self) -> list[MissionVehicle]:
+        """The vehicles that draw maps."""
+        return [m for m in self.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None]
 
     @property
     def vehicles_folder(self) -> Path:
@@ -128,6 +141,7 @@ def load_scenario(mission: str | Path, root: str | Path = ROOT) -> Scenario:
     check_drivers(data.tasks, data.roles, kinds, place)
     check_explorers(data.tasks, data.roles, {name for name, entry in data.vehicles.items() if entry.job.explore}, place)
     check_heights(data.tasks, data.roles, kinds, place)
+    check_merging(data.tasks, data.roles, {member.name for member in site.mapping}, place)
     check_batteries(data.tasks, data.roles, {name for name, file in files.items() if not file.has_battery}, place)
     check_shares(data.tasks, data.roles, kinds, place)
     check_finders(data.tasks, data.roles, {name for name, member in members.items() if DETECTOR in member.file.params}, place)

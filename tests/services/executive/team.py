@@ -21,11 +21,12 @@ from schemas.messages import (
 )
 from services.executive.interface import Inputs
 from services.executive.service import Executive
+from uvf.maths.se2 import IDENTITY
 from uvf.models.mission.file import MissionFile
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import parse_yaml
 from uvf.runtime.contract.service import Answer
-from uvf.runtime.messages.convert import planar_pose
+from uvf.runtime.messages.convert import planar_frame, planar_pose
 
 MISSION = """about: Two rovers and an aircraft.
 world: house
@@ -64,6 +65,7 @@ class Team:
         self.told: dict[str, list[Event]] = {}
         self.tasks = None
         self.detections: dict[str, Detections] = {}
+        self.map_place = {name: planar_frame(0.0, f"{name}/map", f"{name}/map", IDENTITY) for name in ("anne", "bert")}
         self.durations: dict[str, float] = {}
         self.map, self.shared = Grid(frame_id="world"), {}
         self._answers: dict[str, list[Answer]] = {}
@@ -75,8 +77,8 @@ class Team:
         for _ in range(n):
             self.t = round(self.t + DT, 6)
             pose = {name: PoseInFrame(pose=planar_pose(x, y, 0.0, self.heights[name])) for name, (x, y) in self.places.items()}
-            heard = {"pose": pose, "status": self.status, "nav": self.nav, "progress": self.progress, "detections": self.detections}
-            now = Inputs(told=self.told, **heard, **self._answers)
+            heard = {"pose": pose, "status": self.status, "nav": self.nav, "progress": self.progress, "map_place": self.map_place}
+            now = Inputs(told=self.told, detections=self.detections, **heard, **self._answers)
             self.told, self._answers = {}, {}
             out = self.service.step(self.t, now)
             self.tasks = out.tasks or self.tasks

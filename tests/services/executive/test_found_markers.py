@@ -204,6 +204,7 @@ def test_a_condition_counts_each_marker_once(tmp_path):
         ("visit: {vehicle: team, places: [[1, 1]], found: {by: carl, count: 1}}", "one of the two"),
         ("visit: {vehicle: team, found: {by: bert, count: 1}}", "bert looks for no markers"),
         ("visit: {vehicle: team, found: {by: karl, count: 1}}", "did you mean 'carl'"),
+        ("when: {vehicle: carl, merged: true}", "carl draws no map that could be merged"),
         ("when: {vehicle: bert, found: 2}", "bert looks for no markers"),
         ("when: {found: 2}", "whose?"),
     ],

@@ -9,8 +9,9 @@ from schemas.messages import Circle, Grid, MissionProgress, Mode, NavStatus, Tas
 from services.executive.actions.joystick import DriveTrack
 from services.executive.asking import PATIENCE
 from tests.services.executive.team import Team
+from uvf.maths.se2 import IDENTITY
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.messages.convert import planar_pose
+from uvf.runtime.messages.convert import planar_frame, planar_pose
 
 GOAL = "  - {name: go, goal: {vehicle: anne, x: 4.0, y: 1.7}}\n"
 
@@ -82,6 +83,8 @@ def test_a_task_waits_for_its_condition_and_says_for_what(tmp_path):
         ("{vehicle: anne, mode: offboard}", lambda team: setattr(team.status["anne"], "mode", Mode.MODE_OFFBOARD)),
         ("{vehicle: carl, landed: true}", lambda team: setattr(team.status["carl"], "landed", True)),
         ("{vehicle: anne, fails: true}", lambda team: team.status["anne"].failsafes.append("stuck")),
+        ("{vehicle: bert, merged: true}", lambda team: team.map_place.update(anne=planar_frame(0.0, "bert/map", "anne/map", IDENTITY))),
+        ("{vehicle: anne, merged: true}", lambda team: team.map_place.update(anne=planar_frame(0.0, "bert/map", "anne/map", IDENTITY))),
         ("{vehicle: anne, charge_below: 0.2}", lambda team: setattr(team.status["anne"], "battery_remaining", 0.1)),
         ("{vehicle: anne, explored: 0.9}", lambda team: team.nav.update(anne=NavStatus(explored=0.95))),
     ],

@@ -9,7 +9,7 @@ from uvf.models.yaml_data import BadInput, FileLocation, nearest
 
 Roles = Mapping[str, list[str]]
 """Vehicles by role."""
-ABOUT_VEHICLES = ("reaches", "near", "item", "mode", "landed", "fails", "charge_below", "explored", "found")
+ABOUT_VEHICLES = ("reaches", "near", "item", "mode", "landed", "fails", "charge_below", "explored", "merged", "found")
 
 
 def members_of(who: Who, roles: Roles) -> list[str]:

@@ -65,6 +65,17 @@ def check_explorers(tasks: list[Task], roles: Roles, exploring: Collection[str],
                 raise BadInput(f"{place.at('explore')}: {name} has another job; give it job: {{explore: true}}")
 
 
+def check_merging(tasks: list[Task], roles: Roles, mapping: Collection[str], file: FileLocation) -> None:
+    """Checks that whose maps are waited for to be one draw maps, and are not alone; mapping: vehicles that draw maps. Raises BadInput."""
+    for task, place in placed_tasks(tasks, file.at("tasks")):
+        for who, where in _conditions_on("merged", task, place):
+            for name in members_of(who, roles):
+                if name not in mapping:
+                    raise BadInput(f"{where}: {name} draws no map that could be merged; name ground vehicles without 'localize'")
+                if len(mapping) < 2:
+                    raise BadInput(f"{where}: only {name} draws a map; it takes two to be merged")
+
+
 def check_heights(tasks: list[Task], roles: Roles, kinds: Mapping[str, str], file: FileLocation) -> None:
     """Checks that goals of aircraft are above the ground; kinds: of each vehicle. Raises BadInput."""
     for task, place in placed_tasks(tasks, file.at("tasks")):

@@ -54,6 +54,7 @@ class TaskCondition(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     fails: Annotated[bool | None, plain("A failsafe of the vehicle holds, or none does.")] = None
     charge_below: Annotated[Share | None, key("", "Charge of its battery, 0 to 1, is less.")] = None
     explored: Annotated[Share | None, key("", "Share of the floor that it has explored, by its own estimate.")] = None
+    merged: Annotated[bool | None, plain("The vehicle's map is one with that of another, or is alone.")] = None
     found: Annotated[
         Annotated[int, Meta(ge=1, le=200)] | None, key("", "The vehicles together have found so many markers, each counted once.")
     ] = None
