@@ -127,7 +127,7 @@ def criteria_table(verdicts: Sequence[Verdict]) -> Table:
 def _print_result(result: Result, log: Path) -> None:
     if result.verdicts:
         console.print(criteria_table(result.verdicts))
-    for line in (*result.undone, *why(result.verdicts, result.told)):
+    for line in (*result.told.crashes, *result.undone, *why(result.verdicts, result.told)):
         typer.echo(escaped(line))
     typer.echo(f"simulated {result.simulated:g} s in {result.wall:.1f} s: {result.factor:.1f} x real time")
     typer.echo(f"log {log}: {result.messages} messages, hash {result.log_hash}")

@@ -133,6 +133,8 @@ def tune(
     console = Console()
     for table in tuning.tables(found):
         console.print(table)
+    for line in found.unmet:
+        typer.echo(f"uvf: {line}")
     typer.echo(f"uvf: {written} has them now" if written else f"uvf: 'uvf vehicle tune {name} --write' puts them into its vehicle.yaml")
 
 

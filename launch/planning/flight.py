@@ -144,7 +144,7 @@ def _planned(wishes: FlightWishes, file: FlightFile, params: AirParams, world: W
     airspeed = airspeed_of(wishes.vehicle, params, wishes.airspeed)
     if math.hypot(*wishes.wind) >= airspeed:
         raise BadInput(f"a wind of {math.hypot(*wishes.wind):g} m/s; at {airspeed:g} m/s not every course can be flown in it")
-    turns = CornerLimits(airspeed, (wishes.wind[1], wishes.wind[0]), params.turn_bank)
+    turns = CornerLimits(airspeed, (wishes.wind[1], wishes.wind[0]), params.turn_bank, params.roll_in)
     fastest = airspeed + math.hypot(*wishes.wind)
     least = params.fence_margin + PATH_ROOM if file.fence.zones else 0.0
     if wishes.aside < least:

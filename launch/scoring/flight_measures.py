@@ -55,7 +55,8 @@ def _station_errors(track: RecordedTrack) -> Floats:
 def touchdown_sink(track: RecordedTrack) -> Finding:
     """Sink rate at touchdown [m/s].
 
-    Counts over the last 0.2 s before the wheels touch the ground for good. Infinite unless the aircraft has flown and stands at the end.
+    Counts over the last 0.2 s before the wheels touch the ground for good. Infinite unless the aircraft has flown and
+    stands whole at the end.
     """
     return _at_touchdown(track, touchdown.sink(track.positions()))
 
@@ -72,12 +73,22 @@ def touchdown_error(track: RecordedTrack) -> Finding:
 def speed_at_end(track: RecordedTrack) -> Finding:
     """Mean speed in space [m/s].
 
-    Counts over the last second of the run.
+    Counts over the last second of the run. Infinite for a wreck.
     """
-    return Finding(touchdown.speed_at_end(track.positions()))
+    return _wrecked(track) or Finding(touchdown.speed_at_end(track.positions()))
+
+
+def _wrecked(track: RecordedTrack) -> Finding | None:
+    """A wreck stands too, and may have come down gently: it has not landed."""
+    if track.crash is None:
+        return None
+    t, why = track.crash
+    return Finding(inf, t, track.place_at(t), f"it crashed: {why}")
 
 
 def _at_touchdown(track: RecordedTrack, value: float) -> Finding:
+    if (wreck := _wrecked(track)) is not None:
+        return wreck
     p = track.positions()
     at = touchdown.touchdown(p)
     if at is None:

@@ -3,6 +3,7 @@
 from collections import defaultdict, deque
 from collections.abc import Iterator, Sequence
 
+from launch.scoring.recorded_track import CRASHED
 from launch.scoring.scores import Verdict
 from schemas import topics
 from schemas.messages import Event, Mode, NavStatus, VehicleStatus
@@ -18,6 +19,8 @@ class LastWords:
     """Listens to a run on any bus (or is fed from a log) and keeps the events and last states of each vehicle."""
 
     def __init__(self) -> None:
+        self.crashes: list[str] = []
+        """A line for each aircraft that its simulator says has crashed."""
         self._events: defaultdict[str, deque[tuple[float, str]]] = defaultdict(lambda: deque(maxlen=KEPT))
         self._states: defaultdict[str, dict[str, tuple[float, str]]] = defaultdict(dict)  # by vehicle and topic: since when [s], what
 
@@ -31,7 +34,10 @@ class LastWords:
         _, vehicle, name = sample.key.split("/", 2)
         t = sample.stamp_ns / 1e9
         if name.startswith("state/events/"):
-            self._events[vehicle].append((t, event_text(Event.FromString(sample.payload))))
+            event = Event.FromString(sample.payload)
+            self._events[vehicle].append((t, event_text(event)))
+            if event.text == CRASHED:
+                self.crashes.append(f"{vehicle} crashed at {t:.1f} s: {event.cause}")
             return
         planner = name == "nav/status"
         text = _planner(NavStatus.FromString(sample.payload)) if planner else _autopilot(VehicleStatus.FromString(sample.payload))

@@ -15,6 +15,9 @@ from uvf.runtime.messages.convert import wxyz
 
 Floats = NDArray[np.float64]
 
+CRASHED = "crashed"
+"""What the simulator says of an aircraft that has."""
+
 
 @dataclass(frozen=True)
 class BegunContact:
@@ -91,7 +94,7 @@ class RecordedTrack:
 
     def _keep_event(self, t: float, payload: bytes) -> None:
         event = Event.FromString(payload)
-        if event.text == "crashed" and self.crash is None:
+        if event.text == CRASHED and self.crash is None:
             self.crash = t, event.cause
 
     @property

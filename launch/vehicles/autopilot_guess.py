@@ -24,31 +24,28 @@ from uvf.models.yaml_data import BadInput
 OTHERS, CLIMB = (1.15, 1.07, 0.93), 0.02  # of the trim speed, the first at which it flies; rad
 SLOWEST, FASTEST = 0.8, 1.25  # of the trim speed
 STEEPEST = 0.12  # climb and sink over the speed
-SHARE = 0.7  # of what the throttle reaches
+SHARE = 0.7  # of the climb at full throttle
+DIVING, IDLE_SHARE = 1.15, 0.9  # of the trim speed, that a steep descent may take; of the sink with an idling engine there
 BANK = 0.7  # tangent of the bank of a holding circle
-RESPONSE = 3.0  # time constants of the free motion within which a commanded angle is reached
-PROPORTIONAL, INTEGRAL = {"roll": 0.29, "pitch": 1.02}, {"roll": 0.86, "pitch": 2.7}  # of the feed-forward; 1/s; as for Milvus
-SPEED = 25.0  # m/s, for which the defaults of the autopilot are
 MARGIN = 1.1  # of a speed over that at which the wing stalls
 HIGHEST_ALPHA = 0.25  # rad, where a model tells of no stall
 IDLING = (0.0, 0.15, 0.3)
 LOWERED, FLAP_STEPS = 0.1, (1e-3, 1e-3, 0.05)  # rad of flap; rad of alpha, elevator and flap
-YAW, SLIP = 3.0, 0.2  # of the aircraft's own damping; rad/s
 
 
 def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
-    """Autopilot parameters by name, each in its own unit (s, rad, m/s, 1/s, [-]), of an aircraft with an engine.
+    """Autopilot parameters by name, but for the gains, each in its own unit (s, rad, m/s, 1/s, [-]), of an aircraft with an engine.
 
     The pitch and roll feed-forward follow Beard & McLain (5.26, 5.30). Raises BadInput where it has no such steady flight.
     """
     models = linearize(airframe, body.trim_speed, HEIGHT, Path(body.model))
     rates = _rates(models, body)  # first: it tells of an aircraft that cannot bank, which would not fly a turn either
-    found = {**_balance(airframe, body.trim_speed), **rates, **_yaw(models), **_measures(body.trim_speed)}
+    found = {**_balance(airframe, body.trim_speed), **rates, **_measures(body.trim_speed)}
     found["flap_alpha"] = _within(_flap_lift(airframe, models.trim), 0.0, 1.0)
-    found |= _slowest(airframe, body, found) | {"idle_sink": _within(_idle_sink(airframe, body), 0.1, 20.0)}
-    reserve = {"climb_max": 1 - found["trim_throttle"], "sink_max": found["trim_throttle"]}
-    for name, left in reserve.items():
-        reach = SHARE * left / max(found["throttle_climb"], 1e-3)
+    found |= _slowest(airframe, body, found) | {"idle_sink": _within(_idle_sink(airframe, body, body.trim_speed), 0.1, 20.0)}
+    dives = IDLE_SHARE * _idle_sink(airframe, body, DIVING * body.trim_speed)
+    climbs = SHARE * (1 - found["trim_throttle"]) / max(found["throttle_climb"], 1e-3)
+    for name, reach in (("climb_max", climbs), ("sink_max", dives)):
         found[name] = min(max(min(reach, STEEPEST * body.trim_speed), 0.5), 15.0)
     return {name: float(f"{value:.3g}") for name, value in found.items()}
 
@@ -82,9 +79,9 @@ def _other(airframe: Airframe, speed: float) -> tuple[float, Trim]:
     return last, airframe.start(level(last * speed))
 
 
-def _idle_sink(airframe: Airframe, body: AirBody) -> float:
-    """m/s, the steepest of steady descents at cruise airspeed with little throttle: a propeller brakes most while it still turns."""
-    near = Condition(body.trim_speed, HEIGHT, climb=-0.1)
+def _idle_sink(airframe: Airframe, body: AirBody, airspeed: float) -> float:
+    """m/s, the steepest of steady descents at an airspeed [m/s] with little throttle: a propeller brakes most while it still turns."""
+    near = Condition(airspeed, HEIGHT, climb=-0.1)
     with held_still(airframe):
         flown = [find(airframe, replace(near, throttle=throttle), ("airspeed", "throttle")) for throttle in IDLING]
     return -min((climb_rate(c) for c in flown if c is not None), default=-STEEPEST * body.trim_speed)
@@ -106,17 +103,6 @@ def _slowest(airframe: Airframe, body: AirBody, found: Mapping[str, float]) -> d
     return {"alpha_max": alpha, "min_airspeed": max(SLOWEST * body.trim_speed, MARGIN * stalled)}
 
 
-def _yaw(models: LinearModels) -> dict[str, float]:
-    """The damper in proportion to the aircraft's own damping; the slip loop by the side force that a rudder makes in the end."""
-    side = models.lateral
-    power, damping = side.slope("r", "delta_r"), side.slope("r", "r")
-    forced = side.slope("v", "delta_r") - side.slope("v", "v") * power / side.slope("r", "v")
-    return {
-        "yaw_damping": _within(YAW * damping / power, 0.0, 1.0),
-        "slip_i": _within(SLIP / abs(forced), 0.0, 1.0),
-    }
-
-
 def _flap_lift(airframe: Airframe, trim: Condition) -> float:
     """How far the angle of attack falls per flap that is lowered, lift and pitching moment as before; 0 without flaps."""
 
@@ -132,23 +118,19 @@ def _flap_lift(airframe: Airframe, trim: Condition) -> float:
 
 
 def _rates(models: LinearModels, body: AirBody) -> dict[str, float]:
-    """Gains of the rate loops: the feed-forward of a rate is the deflection that holds it against the damping.
+    """The feed-forward of a rate is the deflection that holds it against the damping.
 
     That is a_phi1 / a_phi2 and a_theta1 / a_theta3 of Beard & McLain (5.26, 5.30).
     """
-    sides = {"roll": (models.lateral, "p", "delta_a", 0.3), "pitch": (models.longitudinal, "q", "delta_e", 0.4)}
+    sides = {"roll": (models.lateral, "p", "delta_a"), "pitch": (models.longitudinal, "q", "delta_e")}
     found = {}
-    for axis, (side, rate, surface, quickest) in sides.items():
+    for axis, (side, rate, surface) in sides.items():
         damping, power = abs(side.slope(rate, rate)), abs(side.slope(rate, surface))
         if power < 1e-6 * damping:
             why = f"{body.model}: nothing that the autopilot moves makes it {axis}"
             raise BadInput(f"{why}: these figures are an aeroplane's, which banks; those of an airship are set by hand, with law: airship")
-        ahead = damping / power
-        found[f"{axis}_time"] = _within(RESPONSE / damping, quickest, 2.0)
-        found[f"{axis}_ff"] = _within(ahead, 0.0, 2.0)
-        found[f"{axis}_p"] = _within(PROPORTIONAL[axis] * ahead, 0.0, 2.0)
-        found[f"{axis}_i"] = _within(INTEGRAL[axis] * ahead, 0.0, 2.0)
-    return found | {"lead_time": found["roll_time"]}  # a bank that follows a ramp is late by the time constant
+        found[f"{axis}_ff"] = _within(damping / power, 0.0, 2.0)
+    return found
 
 
 def _measures(speed: float) -> dict[str, float]:
@@ -156,10 +138,9 @@ def _measures(speed: float) -> dict[str, float]:
     return {
         "trim_airspeed": speed,
         "max_airspeed": FASTEST * speed,
-        "k_path": 0.04 * SPEED / speed,
         "hold_radius": max(speed**2 / (GRAVITY * BANK), 20.0),
     }
 
 
 def _within(value: float, low: float, high: float) -> float:
-    return float(min(max(value, low), high))
+    return float(min(max(value, low), high)) + 0.0  # no negative zero

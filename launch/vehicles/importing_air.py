@@ -9,16 +9,20 @@ from typing import Any
 import msgspec
 import yaml
 
+from launch.vehicles.air_design import modelled, timing
 from launch.vehicles.aircraft_rules import SEA_LEVEL
 from launch.vehicles.aircraft_trial import tried
 from launch.vehicles.autopilot_guess import autopilot_figures
+from launch.vehicles.tuning import rounded
 from services.sim_air.engine.airframe import Airframe
+from uvf.control.design.gain_search import LATERAL, LONGITUDINAL, begun
 from uvf.maths.atmosphere import RHO0
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.importing.jsbsim import copy_model
 from uvf.models.importing.notes import Notes
 from uvf.models.jsbsim.model_file import weight_and_wing
 from uvf.models.vehicle.air import AirBody, CommandProperties
+from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
 
@@ -89,8 +93,17 @@ def _autopilot(folder: Path, body: AirBody, notes: Notes) -> dict[str, float]:
         return {}
     try:
         figures = autopilot_figures(airframe, body)
+        known = msgspec.structs.replace(AirParams(), **figures)
+        aircraft = modelled(airframe, body, known)
+        params = rounded(begun(aircraft.loops, known))
     except BadInput as error:
         notes.add(f"no autopilot figures: {str(error).rpartition('.xml: ')[2]}")
         return {}
-    notes.add("found: the autopilot's figures of the airframe, from steady flights and linear models; guessed: its gains and limits")
-    return figures
+    notes.add("found: the autopilot's figures of the airframe, from steady flights and linear models; its gains are by rule of thumb")
+    unstable = [loop for loop in aircraft.loops.loops(params) if not loop.stable]
+    if unstable:
+        notes.add(f"with these gains it is unstable at {unstable[0].airspeed:.0f} m/s")
+    notes.add("'uvf vehicle tune NAME --write' designs its gains and shows their margins")
+    gains = {name: getattr(params, name) for name in (*LATERAL, *LONGITUDINAL)}
+    gains |= {"final_climb_p": params.climb_p, "final_pitch_time": params.pitch_time}
+    return figures | gains | timing(aircraft, params, body.controls.aileron.limit)

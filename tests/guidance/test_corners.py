@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uvf.guidance.corners import MOST_OUTSIDE, ROLL_IN, STEP, CornerLimits, plan
+from uvf.guidance.corners import MOST_OUTSIDE, STEP, CornerLimits, plan
 from uvf.maths.geodesy import GRAVITY
 
 SPEED, BANK = 25.0, 0.8
@@ -44,7 +44,7 @@ def test_through_the_air_it_is_flown_at_one_speed_and_within_the_bank(degrees, w
     heading = np.unwrap(np.arctan2(air[:, 1], air[:, 0]))
     banks = np.arctan(np.diff(heading) / STEP * SPEED / GRAVITY)
     assert np.abs(banks).max() <= BANK * 1.01
-    assert np.abs(np.diff(banks)).max() / STEP <= math.pi / 2 * BANK / ROLL_IN * 1.1
+    assert np.abs(np.diff(banks)).max() / STEP <= math.pi / 2 * BANK / CornerLimits(SPEED, (0.0, 0.0), BANK).roll_in * 1.1
 
 
 @pytest.mark.parametrize("wind", WINDS)

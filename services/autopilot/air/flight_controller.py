@@ -15,7 +15,6 @@ from uvf.guidance.vector_field import LateralGuidance
 from uvf.models.vehicle.flight_params import AirParams
 
 FLAP_RATE = 0.1  # rad/s, slow enough for the loops to follow
-FIRM_CLIMB, FIRM_PITCH = 3.0, 0.7  # times climb_p and pitch_time
 
 
 class FlightController:
@@ -40,7 +39,7 @@ class FlightController:
             self._flap = asked.flap
             return asked
         if wish.firm:
-            params = msgspec.structs.replace(params, climb_p=FIRM_CLIMB * params.climb_p, pitch_time=FIRM_PITCH * params.pitch_time)
+            params = msgspec.structs.replace(params, climb_p=params.final_climb_p, pitch_time=params.final_pitch_time)
         self._flap += min(max(wish.flap - self._flap, -FLAP_RATE * dt), FLAP_RATE * dt)
         flap = self._lifting(wish.lift, now, params, dt)
         if self._flap > 0:

@@ -177,6 +177,10 @@ class Airframe:
         """
         return self._steady(lambda _: self._place_held(held), controls)
 
+    def accelerations_now(self) -> Floats:
+        """(6,) derivatives of u, v, w [m/s^2] and p, q, r [rad/s^2], FRD, of the last step; also while it is held still."""
+        return self._gauges.accelerations()
+
     def _steady(self, place: Callable[[float], None], controls: Controls) -> Floats:
         """place: sets the state, given the time [s] for which it will be held."""
 
@@ -288,6 +292,7 @@ def _load(folder: Path, path: Path, body: AirBody) -> jsbsim.FGFDMExec:
     check_model(path)
     fdm = jsbsim.FGFDMExec(str(folder))
     fdm.set_debug_level(0)
+    fdm.set_dt(1 / body.physics_hz)  # before loading: filters and actuators of the model work out their coefficients then
     try:
         with c_output_discarded(), with_gust_rates(path) as aircraft:
             loaded = fdm.load_model_with_paths(body.model, str(aircraft), "engine", "systems")
@@ -297,7 +302,6 @@ def _load(folder: Path, path: Path, body: AirBody) -> jsbsim.FGFDMExec:
     if not loaded:
         raise BadInput(f"{path}{why or ': JSBSim refuses it; look at its <file=...> names, engine and sections'}")
     _check_properties(path, fdm, body)
-    fdm.set_dt(1 / body.physics_hz)
     try:
         with c_output_discarded():
             fdm.run_ic()  # until then it does not know its own centre of gravity

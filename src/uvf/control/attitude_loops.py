@@ -49,7 +49,7 @@ class AttitudeLoops:
         """Surface deflections [rad] and throttle [0..1] for one cycle; bank, pitch and throttle asked for are limited first."""
         aileron = self._aileron(cycle, clip(wanted.bank, cycle.bank_limit))
         elevator = self._pitch.step(cycle, wanted.pitch)
-        return Surfaces(aileron, elevator, self._rudder(cycle, wanted.rudder), min(max(wanted.throttle, 0.0), 1.0))
+        return Surfaces(aileron, elevator, self._rudder(cycle, aileron, wanted.rudder), min(max(wanted.throttle, 0.0), 1.0))
 
     def _aileron(self, cycle: Cycle, bank: float) -> float:
         now, params = cycle.now, cycle.params
@@ -58,14 +58,18 @@ class AttitudeLoops:
         moving = math.sqrt(cycle.scale) * params.roll_ff * rate + cycle.scale * params.roll_p * error
         return self._roll.step(moving, cycle.scale, params.roll_i * error, cycle.dt)
 
-    def _rudder(self, cycle: Cycle, given: float | None) -> float:
-        """Damps yaw against the rate of a coordinated turn; takes out the side force slowly, unless a rudder is given."""
+    def _rudder(self, cycle: Cycle, aileron: float, given: float | None) -> float:
+        """Holds the rate of a coordinated turn, damps what differs from it, and goes with the aileron against its adverse yaw.
+
+        Takes out the side force slowly, unless a rudder is given.
+        """
         now, params = cycle.now, cycle.params
         turning = GRAVITY / cycle.speed * math.sin(now.roll) * math.cos(now.pitch)
         damping = cycle.scale * params.yaw_damping * (now.r - turning)
         if given is not None:
             return clip(damping + given, self._servos.rudder.limit)
-        return self._slip.step(damping, cycle.scale, params.slip_i * now.side_force, cycle.dt)
+        ahead = math.sqrt(cycle.scale) * params.rudder_ff * turning + params.rudder_mix * aileron
+        return self._slip.step(damping + ahead, cycle.scale, params.slip_i * now.side_force, cycle.dt)
 
 
 def _pull(cycle: Cycle, load: float) -> float:

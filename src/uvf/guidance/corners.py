@@ -20,8 +20,7 @@ Floats = NDArray[np.float64]
 
 STRAIGHT = 0.02  # rad, below which a corner is none
 SHARPEST = 2.8  # rad, beyond which the waypoint is overflown and the next leg joined from there
-ROLL_IN = 1.0  # s, from level to the bank of the turn
-EASED = 1.2  # s, the same for curves, which may change from one side to the other at once
+EASED = 1.2  # times roll_in, for curves, which may change from one side to the other at once
 BACK = 0.7  # of the turn's bank, for the way back from beyond the second leg
 MOST_BEYOND = 0.6  # rad, of heading
 MOST_OUTSIDE = 0.3  # of the radius through the air, beyond the second leg
@@ -36,6 +35,7 @@ class CornerLimits:
     airspeed: float  # m/s
     wind: Point  # m/s north and east, the way it blows to
     bank: float  # rad, of the turn
+    roll_in: float = 1.0  # s, from level to that bank
 
     @property
     def radius(self) -> float:
@@ -45,7 +45,7 @@ class CornerLimits:
     @property
     def ramp(self) -> float:
         """Distance [m] over ground in which it rolls from level to the bank of the turn."""
-        return EASED * self._fastest
+        return EASED * self.roll_in * self._fastest
 
     @property
     def _fastest(self) -> float:
@@ -116,7 +116,7 @@ class CornerPlanner:
     def corner(self, beyond: float) -> Corner:
         """The corner that turns ``beyond`` [rad] further than to the new heading, and back."""
         side, v = math.copysign(1.0, self.turn), self.flying.airspeed
-        rate = np.concatenate((_pulse(abs(self.turn) + beyond, self.flying.bank, v), -_pulse(beyond, BACK * self.flying.bank, v))) * side
+        rate = np.concatenate((_pulse(abs(self.turn) + beyond, self.flying, 1.0), -_pulse(beyond, self.flying, BACK))) * side
         heading = self.heading + _integral(rate)
         velocity = v * np.column_stack((np.cos(heading), np.sin(heading))) + self.flying.wind
         way = np.column_stack([_integral(column) for column in velocity.T])
@@ -135,11 +135,12 @@ class CornerPlanner:
         return float(np.minimum(first, second).max()), float(-second[len(second) // 2 :].min())
 
 
-def _pulse(angle: float, bank: float, airspeed: float) -> Floats:
-    """Rates [rad/s] of a turn by ``angle`` [rad]: rolling to ``bank`` [rad], holding it, rolling out; a small one takes less bank."""
+def _pulse(angle: float, flying: CornerLimits, share: float) -> Floats:
+    """Rates [rad/s] of a turn by ``angle`` [rad]: rolling to a ``share`` of the bank, holding it, rolling out; a small one takes less."""
     if angle < 1e-6:
         return np.zeros(0)
-    ramp = 0.5 - 0.5 * np.cos(np.pi * np.arange(round(ROLL_IN / STEP) + 1) * STEP / ROLL_IN)
+    bank, airspeed, roll_in = share * flying.bank, flying.airspeed, flying.roll_in
+    ramp = 0.5 - 0.5 * np.cos(np.pi * np.arange(round(roll_in / STEP) + 1) * STEP / roll_in)
     tangent = math.tan(bank)
     for _ in range(HALVINGS):
         rolling = 2 * _area(np.tan(bank * ramp)) * GRAVITY / airspeed

@@ -1,6 +1,7 @@
 """The pieces of a flown route: a leg, the turn onto the next, a circle."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from uvf.guidance.corners import Corner
 from uvf.guidance.vector_field import PathReference, Point, line_reference, orbit_reference
 from uvf.models.vehicle.flight_params import AirParams
 
+CHANGES = 0.04  # s, over which the change of a bend is taken, each way
 CAPTURED = 0.3  # of the radius, from the circle: near enough to count turns
 BEHIND, AHEAD = 20.0, 40.0  # m along a curve, where the aircraft is looked for
 
@@ -35,6 +37,15 @@ class AltitudeProfile:
 
     height: float
     climb: float = 0.0
+
+
+def banked_for(bend: Callable[[float], float], s: float, now: Estimate, params: AirParams) -> float:
+    """Curvature [1/m] to bank for at ``s`` [m] of a path with the curvature ``bend``.
+
+    A lead time ahead, and beyond that as much as it changes there within ``bank_time``: the lag of roll behind its command, inverted.
+    """
+    ahead, step = s + now.ground_speed * params.lead_time, now.ground_speed * CHANGES
+    return bend(ahead) + params.bank_time * (bend(ahead + step) - bend(ahead - step)) / (2 * CHANGES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +92,7 @@ class Leg:
         """Path reference on the leg, its curvature a lead time ahead."""
         position = (now.north, now.east)
         aim = line_reference(self.along, self.start.point, position, params)
-        return replace(aim, curvature=self.bend(self.progress(position) + now.ground_speed * params.lead_time))
+        return replace(aim, curvature=banked_for(self.bend, self.progress(position), now, params))
 
     def level(self, now: Estimate) -> AltitudeProfile:
         """Altitude profile on a straight line between the heights of both ends."""
@@ -109,11 +120,12 @@ class Turn:
 
     def aim(self, now: Estimate, params: AirParams) -> PathReference:
         """Path reference on the corner, its curvature a lead time ahead: of the corner, or of the next leg."""
+        s, aside, course = self.corner.nearest((now.north, now.east))
+        return PathReference(aside, course, banked_for(self._bend, s, now, params), params.k_path, params.chi_inf)
+
+    def _bend(self, s: float) -> float:
         corner = self.corner
-        s, aside, course = corner.nearest((now.north, now.east))
-        ahead = s + now.ground_speed * params.lead_time
-        curvature = corner.bend(ahead) if ahead <= corner.length else self.onto.bend(corner.after + ahead - corner.length)
-        return PathReference(aside, course, curvature, params.k_path, params.chi_inf)
+        return corner.bend(s) if s <= corner.length else self.onto.bend(corner.after + s - corner.length)
 
     def level(self, now: Estimate) -> AltitudeProfile:
         """Altitude profile on a straight line between the heights of the two legs where the corner begins and ends."""
@@ -186,7 +198,7 @@ class Curve:
     def aim(self, now: Estimate, params: AirParams) -> PathReference:
         """Path reference on the curve, its curvature a lead time ahead."""
         s, aside, course = self._nearest((now.north, now.east))
-        return PathReference(aside, course, self.bend(s + now.ground_speed * params.lead_time), params.k_path, params.chi_inf)
+        return PathReference(aside, course, banked_for(self.bend, s, now, params), params.k_path, params.chi_inf)
 
     def level(self, now: Estimate) -> AltitudeProfile:
         """Altitude profile by linear interpolation between the heights over the length."""

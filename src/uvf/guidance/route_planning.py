@@ -35,7 +35,7 @@ class RoutePlanner:
     @property
     def flying(self) -> corners.CornerLimits:
         """Limits of corners at this airspeed and in this wind, with ``turn_bank``."""
-        return corners.CornerLimits(self.speed, self.wind, self.params.turn_bank)
+        return corners.CornerLimits(self.speed, self.wind, self.params.turn_bank, self.params.roll_in)
 
     def towards(self, stop: NextItem, start: Place, course: float | None = None, entry: Bend | None = None) -> Leg | Curve | Circle:
         """The piece from ``start`` to the item of ``stop``; with a ``course`` [rad] it begins in that direction."""

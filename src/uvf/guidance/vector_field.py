@@ -16,6 +16,7 @@ from uvf.models.vehicle.flight_params import AirParams
 Point = tuple[float, float]
 INTEGRATES_WITHIN = 5.0  # m
 TURN_TRIM_LIMIT = 0.05  # rad/s
+SHALLOWEST, STEEPEST = 0.4, 2.0  # of the field about a path, by the ground speed
 
 
 def turn_radius(speed: float, bank: float) -> float:
@@ -30,7 +31,7 @@ class PathReference:
     error: float  # m, the aircraft's distance to the right of the path
     course: float  # rad, of the path there
     curvature: float  # 1/m, of the path a lead time ahead
-    convergence: float  # 1/m, steepness of the field: course correction per distance, near the path
+    convergence: float  # 1/m, steepness of the field at cruise: course correction per distance, near the path
     limit: float  # rad, course correction far away
 
 
@@ -54,7 +55,8 @@ def orbit_reference(centre: Point, radius: float, position: Point, params: AirPa
     course = math.atan2(east, north) + turn * math.pi / 2
     error = turn * (abs(radius) - distance)
     near = min(abs(radius) / max(distance, 1.0), 1.0)
-    return PathReference(error, course, near * turn / abs(radius), params.k_orbit / abs(radius), math.pi / 2)
+    as_line = params.k_path * params.chi_inf / (math.pi / 2)  # near the circle the field is as steep as about a line
+    return PathReference(error, course, near * turn / abs(radius), params.k_orbit / abs(radius) if params.k_orbit else as_line, math.pi / 2)
 
 
 class LateralGuidance:
@@ -70,10 +72,11 @@ class LateralGuidance:
         """
         speed = max(now.ground_speed, 5.0)
         off_path = math.remainder(now.course - aim.course, math.tau)
-        slope = aim.limit * 2 / math.pi * aim.convergence
-        correction = -aim.limit * 2 / math.pi * math.atan(aim.convergence * aim.error)
+        convergence = aim.convergence * min(max(params.trim_airspeed / speed, SHALLOWEST), STEEPEST)  # the same in time in any wind
+        slope = aim.limit * 2 / math.pi * convergence
+        correction = -aim.limit * 2 / math.pi * math.atan(convergence * aim.error)
         drift = speed * math.sin(off_path)
-        field_rate = -slope / (1 + (aim.convergence * aim.error) ** 2) * drift
+        field_rate = -slope / (1 + (convergence * aim.error) ** 2) * drift
         course_error = math.remainder(correction - off_path, math.tau)
         rate = speed * aim.curvature + clip(field_rate, 0.5) + params.course_p * course_error
         if abs(aim.error) < INTEGRATES_WITHIN:

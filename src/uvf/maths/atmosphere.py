@@ -20,6 +20,11 @@ def altitude(static_pressure: float) -> float:
     return T0 / LAPSE * (1 - math.pow(static_pressure / P0, 1 / EXPONENT))
 
 
+def standard_density(altitude: float) -> float:
+    """Density [kg/m^3] of the standard atmosphere at ``altitude`` [m AMSL], in the troposphere."""
+    return density(pressure(altitude), T0 - LAPSE * altitude)
+
+
 def density(static_pressure: float, temperature: float) -> float:
     """Density [kg/m^3] of dry air at a static pressure [Pa] and a temperature [K]."""
     return static_pressure / (GAS * temperature)

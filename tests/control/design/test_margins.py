@@ -32,4 +32,10 @@ def test_the_least_of_several_crossings_counts():
 
 def test_a_loop_that_never_reaches_one_has_no_margin_of_phase():
     found = margins(OMEGA, 0.5 / (S + 1))
-    assert math.isnan(found.phase) and math.isnan(found.gain)
+    assert math.isnan(found.phase) and math.isnan(found.gain) and found.peak <= 1.0
+
+
+def test_an_unstable_loop_is_not_shown_as_one_with_room():
+    found = margins(OMEGA, 1000.0 / (S + 1) ** 3)  # far beyond the 8 that it bears
+    assert found.gain < 0.01 and found.gain_db < -40.0
+    assert found.phase < 0.0

@@ -39,5 +39,13 @@ def test_only_the_last_events_are_told_or_the_first_from_a_time_on():
     assert [line.rpartition(" ")[2] for line in words.of("kart", since=20.5)] == [str(n) for n in range(20, 20 + TOLD)]
 
 
+def test_a_crash_is_told_whatever_else_is():
+    bus, words = LocalBus(), LastWords()
+    words.follow(bus)
+    say(bus, topics.EVENTS.by("sim_air"), Event(severity=Event.CRITICAL, text="crashed", cause="the nose touched the ground"), 12.3, "eye")
+    bus.poll()
+    assert words.crashes == ["eye crashed at 12.3 s: the nose touched the ground"]
+
+
 def test_of_a_vehicle_that_said_nothing_it_is_said():
     assert LastWords().of("kart") == ["kart: no event and no status was recorded"]

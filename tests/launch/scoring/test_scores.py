@@ -115,6 +115,14 @@ def test_a_rover_that_tips_over_and_an_aircraft_that_its_simulator_says_so_of_ha
     assert found("milvus", "crashed", [truth("milvus", 3, 5, 6), event]) == Finding(1.0, 3.0, (5.0, 6.0), "nose touched the ground")
 
 
+@pytest.mark.parametrize("measure", ["touchdown_sink", "touchdown_error", "speed_at_end"])
+def test_a_wreck_has_not_landed_however_gently_it_lies(measure):
+    landed = [truth("milvus", k / 10, 25.0 * k / 10, max(10.0 - 2.5 * k / 10, 0.0) if k < 60 else 0.0) for k in range(200)]
+    crash = sample("milvus", topics.EVENTS.by("sim_air"), Event(text="crashed", cause="the nose touched the ground"), 4)
+    told = found("milvus", measure, [*landed, crash])
+    assert (told.value, told.t, told.note) == (float("inf"), 4.0, "it crashed: the nose touched the ground")
+
+
 def test_a_wholly_free_map_knows_the_whole_floor_and_an_unknown_one_nothing():
     for cells, expected in ((0, 1.0), (-1, 0.0), (100, 0.0)):
         grid = occupancy_grid(np.full((800, 800), cells, dtype=np.int8), 0.05, -20, -20, "burger/map", 1.0)

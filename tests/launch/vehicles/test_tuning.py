@@ -2,6 +2,7 @@
 
 import shutil
 from contextlib import closing
+from dataclasses import replace
 from unittest import mock
 
 import numpy as np
@@ -13,7 +14,9 @@ from benchmarks.autopilot import cost_and_slip as bench
 from benchmarks.autopilot.accuracy.flight import PLANE, Probe
 from launch.commands.vehicle import vehicle_app
 from launch.vehicles.autopilot_guess import autopilot_figures
-from launch.vehicles.tuning import SECONDS, tune, with_params, write
+from launch.vehicles.parameter_lines import with_params
+from launch.vehicles.tuning import SECONDS, steps, tune, write
+from uvf.control.design.gain_search import GAIN, PEAK, PHASE, designed
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput, FileLocation
 
@@ -27,8 +30,8 @@ pytestmark = pytest.mark.timeout(300)  # tune flies many steady flights
 
 @pytest.fixture(scope="module", autouse=True)
 def figures():
-    """Many steady flights, once for each model: what they come to depends on the model alone."""
-    found = {}
+    """Many steady flights and a search, once for each model: what they come to depends on the model alone."""
+    found, gains = {}, {}
 
     def once(airframe, body):
         key = body.model
@@ -36,7 +39,13 @@ def figures():
             found[key] = autopilot_figures(airframe, body)
         return dict(found[key])
 
-    with mock.patch("launch.vehicles.tuning.autopilot_figures", once):
+    def designed_once(aircraft, params):
+        key = params.trim_airspeed
+        if key not in gains:
+            gains[key] = designed(aircraft, params)
+        return gains[key]
+
+    with mock.patch("launch.vehicles.tuning.autopilot_figures", once), mock.patch("launch.vehicles.tuning.designed", designed_once):
         yield
 
 
@@ -45,20 +54,36 @@ def tuning(request, figures):
     return tune(ROOT / "vehicles" / request.param)
 
 
-def test_the_loops_are_stable_with_room(tuning):
+def test_every_loop_has_its_margins_at_every_airspeed(tuning):
+    assert {loop.name for loop in tuning.loops} == {"path", "roll", "yaw", "height", "pitch", "airspeed"}
+    assert len({loop.airspeed for loop in tuning.loops}) == 3
     for loop in tuning.loops:
-        assert np.degrees(loop.margins.phase) > (30.0 if loop.axis == "height" else 45.0), loop.axis
-        assert not loop.margins.gain < 2.0, loop.axis  # that of airspeed is without end
-        assert loop.margins.delay > 0.1, loop.axis
+        assert loop.stable
+        assert np.degrees(loop.margins.phase) > PHASE, (loop.name, loop.airspeed)
+        assert abs(loop.margins.gain_db) > GAIN, (loop.name, loop.airspeed)
+        assert loop.margins.peak < PEAK, (loop.name, loop.airspeed)
+    assert tuning.unmet == []
+
+
+def test_it_stays_stable_with_derivatives_and_lags_that_are_off(tuning):
+    assert tuning.unstable == []
 
 
 def test_a_step_ends_at_what_is_asked_and_does_not_swing(tuning):
-    for loop in tuning.loops:
-        t = np.linspace(0.0, SECONDS[loop.axis], 121)
-        step = loop.step(t)
+    t = np.linspace(0.0, SECONDS, 121)
+    for name, step in steps(tuning, t).items():
         assert step[0] == pytest.approx(0.0, abs=0.01)
-        assert step[-1] == pytest.approx(1.0, abs=0.15), loop.axis
-        assert step.max() < 1.2, loop.axis
+        assert step[-1] == pytest.approx(1.0, abs=0.15), name
+        assert step.max() < 1.25, name
+
+
+def test_what_is_unstable_is_not_written(tuning, tmp_path):
+    folder = shutil.copytree(tuning.folder, tmp_path / tuning.folder.name)
+    before = (folder / "vehicle.yaml").read_text()
+    loops = [replace(loop, stable=False) if loop.name == "roll" else loop for loop in tuning.loops]
+    with pytest.raises(BadInput, match=r"vehicle.yaml: not written: with the best gains that were found roll is unstable at"):
+        write(replace(tuning, folder=folder, loops=loops))
+    assert (folder / "vehicle.yaml").read_text() == before
 
 
 def test_the_vehicles_have_the_figures_that_their_models_give(tuning):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from uvf.estimation.ekf.aiding import Aiding
-from uvf.estimation.ekf.air import AirData
+from uvf.estimation.ekf.air import SLOWEST, AirData
 from uvf.estimation.ekf.alignment import attitude, heading, levelled, points
 from uvf.estimation.ekf.datasheet import Datasheet
 from uvf.estimation.ekf.filter import Filter
@@ -61,7 +61,7 @@ class FullEstimator:
         self._sheet = sheet
         self._gyros = [LowPass(GYRO_TIME) for _ in range(3)]
         self._side, self._lift = LowPass(FORCE_TIME), LowPass(FORCE_TIME)
-        self._air = AirData()
+        self._air = AirData(sheet.pitot_noise)
         self._standstill = Standstill()
         self._handover = Handover()
         self._aiding: Aiding | None = None
@@ -230,18 +230,19 @@ class FullEstimator:
 
     def _take_fix(self, aiding: Aiding, fix: GnssFix, gnss_age: float) -> None:
         x = aiding.filter.state.x
-        before = x[POSITION].copy()
+        position, velocity = x[POSITION].copy(), x[VELOCITY].copy()
         aiding.fix(fix, self._acceleration, self._sampled, max(fix.age - (self._t - self._sampled), 0.0))
-        self._handover.take(before - x[POSITION], gnss_age)
+        self._handover.take(position - x[POSITION], velocity - x[VELOCITY], gnss_age)
 
     # handing over
 
     def _estimate(self, aiding: Aiding, params: AirParams, dt: float) -> Estimate:
         filter_, x = aiding.filter, aiding.filter.state.x
         age = self._t - self._sampled
+        back, slower = self._handover.step(dt)
         velocity = x[VELOCITY] + age * self._acceleration
-        vn, ve, vd = velocity.tolist()
-        north, east, down = (x[POSITION] + age * velocity + self._handover.step(dt)).tolist()
+        vn, ve, vd = (velocity + slower).tolist()
+        north, east, down = (x[POSITION] + age * velocity + back).tolist()
         bias = x[GYRO_BIAS].tolist()
         p, q, r = ((g.value or 0.0) - b for g, b in zip(self._gyros, bias, strict=True))
         roll, pitch, yaw = self._ahead(aiding, (p, q, r), age)
@@ -263,7 +264,7 @@ class FullEstimator:
             p=p,
             q=q,
             r=r,
-            airspeed=self._airspeed(aiding, params),
+            airspeed=self._airspeed(aiding, params) if self._air.pressures is None else self._felt_airspeed(aiding, dt),
             density=self._air.density,
             side_force=self._side.value or 0.0,
             lift=self._lift.value if self._lift.value is not None else GRAVITY,
@@ -284,6 +285,13 @@ class FullEstimator:
         if self._air.pressures is not None:
             return self._air.airspeed(float(aiding.filter.state.x[PITOT]))
         return self._through_air(aiding) if self.gnss_age < RECKONING_AFTER else params.trim_airspeed
+
+    def _felt_airspeed(self, aiding: Aiding, dt: float) -> float:
+        """m/s, of the pressures with what the aircraft has gained since by its own acceleration."""
+        state = aiding.filter.state
+        through_air = state.through_air
+        gained = float(self._acceleration @ through_air) / max(float(np.linalg.norm(through_air)), SLOWEST)
+        return self._air.smooth(float(state.x[PITOT]), gained, aiding.gusts.walk, dt)
 
     @staticmethod
     def _ahead(aiding: Aiding, rates: tuple[float, float, float], age: float) -> tuple[float, float, float]:

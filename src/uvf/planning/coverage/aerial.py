@@ -53,7 +53,7 @@ class AerialSurvey(NamedTuple):
 def plan_aerial(field: CoverageField, task: AerialTask, params: AirParams) -> AerialSurvey:
     """The survey of a field. Raises ValueError, also where nothing of the field is worth a swath."""
     airspeed = task.airspeed or params.trim_airspeed
-    turns = CornerLimits(airspeed, (task.wind[1], task.wind[0]), params.turn_bank)
+    turns = CornerLimits(airspeed, (task.wind[1], task.wind[0]), params.turn_bank, params.roll_in)
     fastest = airspeed + math.hypot(*task.wind)
     leads = SETTLING * fastest, LEAVING * fastest
     aircraft = SurveyAircraft(GroundSpeed(airspeed, task.wind), turns.radius, leads[0] + turns.ramp / 2, leads[1] + turns.ramp / 2)

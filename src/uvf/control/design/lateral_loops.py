@@ -1,0 +1,82 @@
+"""Roll, yaw and path of ``attitude_loops`` and ``vector_field``, linear about level flight along a line."""
+
+import math
+
+import numpy as np
+
+from uvf.control.design.flight_condition import FORCE_TIME, GYRO_TIME, ActuatorDelays, FlightCondition
+from uvf.control.design.signal_flow import Floats, SignalFlow
+from uvf.maths.geodesy import GRAVITY
+from uvf.models.vehicle.flight_params import AirParams
+
+SIGNALS = (
+    *("v", "p", "r", "phi", "psi", "aside", "off"),
+    *("p_felt", "r_felt", "side_force"),
+    *("path_trim", "bank", "roll_trim", "aileron_asked", "slip_trim", "rudder_asked"),
+    *("servo_a", "servo_r", "delta_a", "delta_r"),
+)
+INPUTS = ("gust_v", "gust_p", "gust_r", "noise_p", "noise_r")
+LOOPS = {"path": "bank", "roll": "aileron_asked", "yaw": "rudder_asked"}
+"""Where each is opened."""
+
+
+def lateral_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
+    """The closed loops at omega (k,) [rad/s]; angles [rad], ``aside`` [m] to the right of the line, ``off`` [rad] its course."""
+    flow = SignalFlow(omega, SIGNALS, INPUTS)
+    flow.opens(*LOOPS.values())
+    _airframe(flow, flight)
+    for surface, asked in (("a", "aileron"), ("r", "rudder")):
+        servo, model = getattr(delays, asked)
+        flow.lag(f"servo_{surface}", servo, {f"{asked}_asked": np.exp(-delays.dead_time * flow.s)})
+        flow.lag(f"delta_{surface}", model, {f"servo_{surface}": 1.0})
+    flow.lag("p_felt", GYRO_TIME, {"p": 1.0, "noise_p": 1.0})
+    flow.lag("r_felt", GYRO_TIME, {"r": 1.0, "noise_r": 1.0})
+    _guidance(flow, flight, params)
+    _roll(flow, flight, params)
+    _yaw(flow, flight, params)
+    return flow
+
+
+def _airframe(flow: SignalFlow, flight: FlightCondition) -> None:
+    """Gusts count as the aircraft's own motion the other way, but for what is kinematic."""
+    model = flight.lateral
+    for state in ("v", "p", "r", "phi", "psi"):
+        own = {by: model.slope(state, by) for by in (*model.states, *model.inputs)}
+        air = ("v",) if state == "v" else ("v", "p", "r") if state in ("p", "r") else ()
+        flow.integral(state, own | {f"gust_{by}": -own[by] for by in air})
+    along, across = flight.airspeed * math.cos(flight.alpha), -flight.airspeed * math.sin(flight.alpha)
+    flow.integral("aside", {"psi": along, "phi": across, "v": 1.0})
+    flow.equal("off", {name: value / flight.ground_speed for name, value in (("psi", along), ("phi", across), ("v", 1.0))})
+    force = {by: model.slope("v", by) for by in ("v", *model.inputs)}
+    flow.lag("side_force", FORCE_TIME, force | {"gust_v": -force["v"]})
+
+
+def _guidance(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
+    speed = flight.ground_speed
+    slope = params.chi_inf * 2 / math.pi * params.k_path * params.trim_airspeed / speed
+    flow.integral("path_trim", {"aside": -params.cross_track_i})
+    rate = {"off": -slope * speed - params.course_p, "aside": -params.course_p * slope, "path_trim": 1.0}
+    flow.equal("bank", {name: value * speed / GRAVITY for name, value in rate.items()})
+
+
+def _roll(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
+    scale, asked = _scale(flight, params), {"bank": 1 / params.roll_time, "phi": -1 / params.roll_time}
+    error = asked | {"p_felt": -1.0}
+    flow.integral("roll_trim", {name: params.roll_i * value for name, value in error.items()})
+    moving = {name: math.sqrt(scale) * params.roll_ff * value for name, value in asked.items()}
+    moving = {name: moving.get(name, 0.0) + scale * params.roll_p * value for name, value in error.items()}
+    flow.equal("aileron_asked", moving | {"roll_trim": scale})
+
+
+def _yaw(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
+    scale = _scale(flight, params)
+    flow.integral("slip_trim", {"side_force": params.slip_i})
+    turning = GRAVITY / flight.airspeed  # rad/s per rad of bank
+    by_bank = math.sqrt(scale) * params.rudder_ff * turning - scale * params.yaw_damping * turning
+    damped = {"r_felt": scale * params.yaw_damping, "phi": by_bank, "slip_trim": scale}
+    flow.equal("rudder_asked", damped | {"aileron_asked": params.rudder_mix})
+
+
+def _scale(flight: FlightCondition, params: AirParams) -> float:
+    """Dynamic pressure at the trim airspeed over that of the condition."""
+    return (params.trim_airspeed / flight.eas) ** 2

@@ -1,0 +1,87 @@
+"""Pitch, height and airspeed of ``attitude_loops`` and ``total_energy``, linear about level flight."""
+
+import math
+
+import numpy as np
+
+from uvf.control.design.flight_condition import AIRSPEED_TIME, GYRO_TIME, ActuatorDelays, FlightCondition
+from uvf.control.design.signal_flow import Floats, SignalFlow
+from uvf.maths.geodesy import GRAVITY
+from uvf.models.vehicle.flight_params import AirParams
+
+SIGNALS = (
+    *("u", "w", "q", "theta", "h", "climb", "airspeed", "q_felt", "airspeed_felt"),
+    *("climb_asked", "climb_trim", "pitch", "pitch_trim", "elevator_asked"),
+    *("kinetic", "unexplained", "throttle_asked"),
+    *("servo_e", "servo_t", "delta_e", "delta_t"),
+)
+INPUTS = ("gust_u", "gust_w", "gust_q", "noise_q", "noise_airspeed")
+LOOPS = {"height": "pitch", "pitch": "elevator_asked", "airspeed": "throttle_asked"}
+"""Where each is opened."""
+
+
+def longitudinal_flow(
+    omega: Floats, flight: FlightCondition, delays: ActuatorDelays, params: AirParams, given_throttle: bool = False
+) -> SignalFlow:
+    """The closed loops at omega (k,) [rad/s]; angles [rad], speeds [m/s], ``h`` [m]; given_throttle: as on the final approach."""
+    flow = SignalFlow(omega, SIGNALS, INPUTS)
+    flow.opens(*LOOPS.values())
+    _airframe(flow, flight)
+    late = np.exp(-delays.dead_time * flow.s)
+    flow.lag("servo_e", delays.elevator[0], {"elevator_asked": late})
+    flow.lag("delta_e", delays.elevator[1], {"servo_e": 1.0})
+    flow.lag("servo_t", delays.throttle[0], {} if given_throttle else {"throttle_asked": late})
+    flow.lag("delta_t", delays.throttle[1], {"servo_t": 1.0})
+    flow.lag("q_felt", GYRO_TIME, {"q": 1.0, "noise_q": 1.0})
+    flow.lag("airspeed_felt", AIRSPEED_TIME, {"airspeed": 1.0, "noise_airspeed": 1.0})
+    _height(flow, flight, params)
+    _pitch(flow, flight, params)
+    _energy(flow, flight, params)
+    return flow
+
+
+def _airframe(flow: SignalFlow, flight: FlightCondition) -> None:
+    """Gusts count as the aircraft's own motion the other way, but for what is kinematic."""
+    model = flight.longitudinal
+    for state in ("u", "w", "q", "theta"):
+        own = {by: model.slope(state, by) for by in (*model.states, *model.inputs)}
+        air = ("u", "w") if state in ("u", "w") else ("u", "w", "q") if state == "q" else ()
+        flow.integral(state, own | {f"gust_{by}": -own[by] for by in air})
+    up = {by: model.slope("h", by) for by in model.states}
+    flow.equal("climb", up)
+    flow.integral("h", {"climb": 1.0})
+    c, s = math.cos(flight.alpha), math.sin(flight.alpha)
+    flow.equal("airspeed", {"u": c, "w": s, "gust_u": -c, "gust_w": -s})
+
+
+def _height(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
+    speed = flight.airspeed
+    flow.equal("climb_asked", {"h": -params.altitude_p})
+    error = {"climb_asked": 1 / speed, "climb": -1 / speed}
+    flow.integral("climb_trim", {name: params.climb_i * value for name, value in error.items()})
+    asked = {name: params.climb_p * value for name, value in error.items()}
+    asked["climb_asked"] += 1 / speed
+    carried = -2 * params.alpha_per_load * GRAVITY / flight.eas**2 / speed  # rad of alpha per m/s
+    flow.equal("pitch", asked | {"climb_trim": 1.0, "airspeed_felt": carried})
+
+
+def _pitch(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
+    scale, asked = (params.trim_airspeed / flight.eas) ** 2, {"pitch": 1 / params.pitch_time, "theta": -1 / params.pitch_time}
+    error = asked | {"q_felt": -1.0}
+    flow.integral("pitch_trim", {name: -params.pitch_i * value for name, value in error.items()})
+    ahead = {name: math.sqrt(scale) * params.pitch_ff * value for name, value in asked.items()}
+    moving = {name: -ahead.get(name, 0.0) - scale * params.pitch_p * value for name, value in error.items()}
+    balance = -2 * params.elev_per_alpha * params.alpha_per_load * GRAVITY / flight.eas**2 / flight.airspeed
+    flow.equal("elevator_asked", moving | {"pitch_trim": scale, "airspeed_felt": balance})
+
+
+def _energy(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
+    speed, pole, slope = flight.airspeed, params.power_pole, max(params.throttle_climb, 1e-3)
+    height = speed / GRAVITY  # m of kinetic energy per m/s
+    made = {"throttle_asked": 1 / slope, "airspeed_felt": -params.throttle_speed / slope}
+    error = {"airspeed_felt": height, "kinetic": -1.0}
+    gained = {name: 2 * pole * value for name, value in error.items()} | {"unexplained": 1.0, "climb": -1.0}
+    flow.integral("kinetic", {name: gained.get(name, 0.0) + made.get(name, 0.0) for name in (*gained, "throttle_asked")})
+    flow.integral("unexplained", {name: pole**2 * value for name, value in error.items()})
+    faster = {"climb_asked": slope, "airspeed_felt": -slope * height * params.airspeed_p, "unexplained": -slope}
+    flow.equal("throttle_asked", faster)

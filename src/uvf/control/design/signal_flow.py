@@ -1,0 +1,93 @@
+"""Linear loops as equations between named signals, solved at each frequency: dead times are exact, and no order is reduced.
+
+Every signal has one equation. What the loop does when it is opened at a signal follows from a disturbance that is added there.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Terms = Mapping[str, complex | float | Complex]
+
+
+class SignalFlow:
+    """Equations between signals at s = j omega; omega: (k,) [rad/s], rising from near 0 to beyond all that moves."""
+
+    def __init__(self, omega: Floats, signals: Sequence[str], inputs: Sequence[str] = ()) -> None:
+        """signals: each needs one equation; inputs: what comes from outside, as gusts and noise."""
+        self.omega = omega
+        self.s: Complex = np.asarray(1j * omega, dtype=np.complex128)
+        self.inputs = tuple(inputs)
+        self._row = {name: i for i, name in enumerate(signals)}
+        self._input = {name: i for i, name in enumerate(inputs)}
+        n = len(signals)
+        self._opened: dict[str, int] = {}
+        self._matrix: Complex = np.zeros((len(omega), n, n), dtype=np.complex128)
+        self._driven: Complex = np.zeros((len(omega), n, len(self.inputs)), dtype=np.complex128)
+        self._order = 0
+        self._solved: Complex | None = None
+
+    def equal(self, name: str, terms: Terms) -> None:
+        """The signal is the sum of the terms: coefficients (scalar or (k,)) by signal or input."""
+        self._set(name, 1.0, terms)
+
+    def integral(self, name: str, terms: Terms) -> None:
+        """The signal's rate of change is the sum of the terms."""
+        self._order += 1
+        self._set(name, self.s, terms)
+
+    def lag(self, name: str, time: float, terms: Terms) -> None:
+        """The signal follows the sum of the terms with a time constant [s]; at once with 0."""
+        self._order += int(time > 0.0)
+        self._set(name, 1.0 + time * self.s, terms)
+
+    def _set(self, name: str, own: complex | Complex, terms: Terms) -> None:
+        row = self._row[name]
+        self._matrix[:, row, row] += own
+        for other, value in terms.items():
+            if other in self._row:
+                self._matrix[:, row, self._row[other]] -= value
+            else:
+                self._driven[:, row, self._input[other]] += value
+
+    def response(self, output: str, by: str) -> Complex:
+        """(k,) of a signal to an input, all loops closed."""
+        return self._all[:, self._row[output], self._input[by]]
+
+    def opens(self, *signals: str) -> None:
+        """Signals at which loops will be opened."""
+        self._opened = {name: len(self.inputs) + i for i, name in enumerate(signals)}
+
+    def closed(self, output: str, at: str) -> Complex:
+        """(k,) of a signal to what is added to the signal ``at`` (of ``opens``, with an equation of ``equal``), all loops closed."""
+        return self._all[:, self._row[output], self._opened[at]]
+
+    def loop(self, at: str) -> Complex:
+        """(k,) the loop opened at a signal of ``equal``, the others closed; the feedback's minus left out: it closes as 1 + L."""
+        return 1.0 / self.closed(at, at) - 1.0
+
+    @property
+    def _all(self) -> Complex:
+        """(k, n, m): every signal to every input, and to what is added to the signals that are opened."""
+        if self._solved is None:
+            added = np.eye(len(self._row))[:, [self._row[name] for name in self._opened]]
+            added = np.broadcast_to(added, (len(self.omega), *added.shape))
+            solved = np.linalg.solve(self._matrix, np.concatenate((self._driven, added), axis=2))
+            self._solved = np.asarray(solved, dtype=np.complex128)
+        return self._solved
+
+    @property
+    def unstable(self) -> int:
+        """Number of closed-loop poles in the right half-plane.
+
+        By the argument principle: the determinant of the equations turns by pi / 2 for each pole on the left, and back for each on the
+        right, as omega goes from 0 beyond the fastest pole (Mikhailov's criterion, which holds with dead times too).
+        """
+        sign, _ = np.linalg.slogdet(self._matrix)
+        angle = np.unwrap(np.angle(sign))
+        start = np.pi * round(float(angle[0]) / np.pi)  # at omega 0 it is real
+        turned = float(angle[-1]) - start
+        return round((self._order - turned * 2 / np.pi) / 2)

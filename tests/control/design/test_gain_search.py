@@ -1,0 +1,96 @@
+"""Gains designed for an aircraft of which only linear models are known: margins everywhere, and less error for less motion."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from uvf.control.design.aircraft_loops import AircraftLoops
+from uvf.control.design.flight_condition import ActuatorDelays, FlightCondition
+from uvf.control.design.gain_search import GAIN, PEAK, PHASE, begun, designed
+from uvf.maths.state_space import StateSpace
+from uvf.models.vehicle.flight_params import AirParams
+
+pytestmark = pytest.mark.timeout(300)
+SPEED = 20.0  # m/s
+LONGITUDINAL = StateSpace(
+    np.array(
+        [
+            [-0.10, 0.45, -1.2, -9.76, 0.0],
+            [-0.55, -4.5, 19.6, -0.6, 0.0],
+            [0.20, -3.2, -6.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0, 0.0],
+            [0.06, -1.0, 0.0, 20.0, 0.0],
+        ]
+    ),
+    np.array([[0.1, 6.0], [-3.0, 0.0], [-40.0, 0.0], [0.0, 0.0], [0.0, 0.0]]),
+    ("u", "w", "q", "theta", "h"),
+    ("delta_e", "delta_t"),
+)
+LATERAL = StateSpace(
+    np.array(
+        [
+            [-0.8, 1.2, -19.9, 9.8, 0.0],
+            [-2.0, -10.0, 4.0, 0.0, 0.0],
+            [1.0, -0.2, -1.5, 0.0, 0.0],
+            [0.0, 1.0, 0.06, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0, 0.0],
+        ]
+    ),
+    np.array([[0.0, 3.0], [60.0, 0.0], [-4.0, -15.0], [0.0, 0.0], [0.0, 0.0]]),
+    ("v", "p", "r", "phi", "psi"),
+    ("delta_a", "delta_r"),
+)
+PARAMS = AirParams(
+    trim_airspeed=SPEED,
+    alpha_per_load=4.0,
+    elev_per_alpha=-1.5,
+    roll_ff=10 / 60,
+    pitch_ff=6 / 40,
+    throttle_climb=0.08,
+    throttle_speed=0.03,
+    rudder_mix=-0.27,
+)
+
+
+def aircraft(lag):
+    flight = FlightCondition(SPEED, SPEED, 0.06, LONGITUDINAL, LATERAL, SPEED, 2.0)
+    return AircraftLoops((flight,), ActuatorDelays(*[(lag, 0.0)] * 3, (0.0, 0.2)))
+
+
+@pytest.fixture(scope="module", params=[0.05, 0.15])
+def design(request):
+    craft = aircraft(request.param)
+    first = begun(craft, PARAMS)
+    return craft, first, designed(craft, first)
+
+
+def test_every_loop_has_its_margins(design):
+    craft, _, params = design
+    for loop in craft.loops(params):
+        assert loop.stable
+        assert not abs(loop.margins.gain_db) < GAIN if loop.margins.gain == loop.margins.gain else True, loop.name
+        assert not np.degrees(abs(loop.margins.phase)) < PHASE, loop.name
+        assert loop.margins.peak <= PEAK, loop.name
+
+
+def test_it_stays_stable_when_the_aircraft_is_another(design):
+    craft, _, params = design
+    assert all(loop.stable for loop in craft.worst(params, seed=7))
+
+
+def test_what_it_begins_with_is_stable(design):
+    craft, first, _ = design
+    assert all(loop.stable for loop in craft.loops(first))
+
+
+def test_slow_servos_make_slow_loops():
+    quick, slow = (designed(aircraft(lag), begun(aircraft(lag), PARAMS)) for lag in (0.05, 0.15))
+    assert slow.roll_time > quick.roll_time
+    assert slow.course_p * slow.k_path < quick.course_p * quick.k_path
+
+
+def test_gains_for_quick_servos_are_found_out_with_slow_ones():
+    params = designed(aircraft(0.02), begun(aircraft(0.02), PARAMS))
+    late = replace(aircraft(0.4), delays=ActuatorDelays(*[(0.4, 0.0)] * 3, (0.0, 0.2)))
+    assert not all(loop.stable for loop in late.loops(params))

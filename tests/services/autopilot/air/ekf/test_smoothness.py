@@ -1,0 +1,67 @@
+"""What guidance and control are told is smooth: the noise of pressures and receivers does not go into the surfaces."""
+
+import numpy as np
+import pytest
+
+from tests.services.autopilot.air.ekf.flying import DT, SPEED, Flown, fly
+from uvf.estimation.ekf.air import AirData
+from uvf.estimation.ekf.handover import EACH, Handover
+from uvf.estimation.sensor_inputs import Pressures
+from uvf.maths import atmosphere
+
+STILL, GUSTY = 0.05, 1.0  # m/s/sqrt(s), of the wind's walk
+STATIC = 100_000.0  # Pa
+
+
+def pressures(speed, noise=0.0):
+    return Pressures(STATIC, 0.5 * atmosphere.density(STATIC, 288.0) * speed**2 + noise, 288.0)
+
+
+def smoothed(speeds, gained, walk, noise, seed=1):
+    air, rng, found = AirData(4.0), np.random.default_rng(seed), []
+    for k, (speed, gain) in enumerate(zip(speeds, gained, strict=True)):
+        air.take(pressures(speed, noise * rng.standard_normal()), k * DT, DT)
+        found.append(air.smooth(0.0, gain, walk, DT))
+    return np.array(found)
+
+
+def test_noise_of_the_pressures_is_kept_out_of_the_airspeed_in_calm_air():
+    flat = np.full(1000, SPEED)
+    calm, gusty = (smoothed(flat, 0 * flat, walk, 4.0)[200:] for walk in (STILL, GUSTY))
+    assert np.abs(np.diff(calm)).mean() < 0.15 * np.abs(np.diff(gusty)).mean()
+    assert calm.mean() == pytest.approx(SPEED, abs=0.02)
+
+
+def test_what_it_gains_itself_is_told_at_once_and_a_gust_as_soon_as_gusts_are_known():
+    t = np.arange(1000) * DT
+    ramp = SPEED + np.clip(t - 10.0, 0.0, 3.0)
+    gained = np.where((t >= 10.0) & (t < 13.0), 1.0, 0.0)
+    assert np.abs(smoothed(ramp, gained, STILL, 0.0) - ramp).max() < 0.1
+    step = np.where(t < 10.0, SPEED, SPEED + 2.0)
+    arrives = {walk: np.flatnonzero(smoothed(step, 0 * t, walk, 0.0) > SPEED + 1.0)[0] * DT - 10.0 for walk in (STILL, GUSTY)}
+    assert arrives[GUSTY] < 0.15 < arrives[STILL] < 1.0
+
+
+def test_a_fix_moves_what_is_told_within_its_time_and_not_at_once():
+    handover = Handover()
+    handover.take(np.array((1.0, 0.0, -0.5)), np.array((0.0, 0.2, 0.0)), 0.2)
+    position, velocity = handover.step(DT)
+    assert position == pytest.approx((1.0, 0.0, 0.0), abs=0.05) and velocity == pytest.approx((0.0, 0.2, 0.0), abs=0.01)
+    assert position[2] == 0.0  # heights are told as they are known
+    for _ in range(round(4 * EACH / DT)):
+        position, velocity = handover.step(DT)
+    assert np.abs(position).max() < 0.03 and np.abs(velocity).max() < 0.01
+
+
+def test_in_flight_the_places_told_go_with_the_velocity_told():
+    """Between two cycles the position moves by what the velocity says: a fix is no jump."""
+    places, velocities = [], []
+
+    def seen(_, now):
+        places.append((now.north, now.east))
+        velocities.append((now.ground_speed * np.cos(now.course), now.ground_speed * np.sin(now.course)))
+
+    fly(Flown(seed=3), 30.0, seen)
+    moved, told = np.diff(places, axis=0) / DT, np.array(velocities)[1:]
+    late = len(moved) // 2
+    assert np.abs(moved - told)[late:].max() < 0.35  # m/s; a fix that is taken at once moves it by 1 to 3 m/s for a cycle
