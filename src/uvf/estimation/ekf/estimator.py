@@ -230,19 +230,18 @@ class FullEstimator:
 
     def _take_fix(self, aiding: Aiding, fix: GnssFix, gnss_age: float) -> None:
         x = aiding.filter.state.x
-        position, velocity = x[POSITION].copy(), x[VELOCITY].copy()
+        before = x[POSITION].copy()
         aiding.fix(fix, self._acceleration, self._sampled, max(fix.age - (self._t - self._sampled), 0.0))
-        self._handover.take(position - x[POSITION], velocity - x[VELOCITY], gnss_age)
+        self._handover.take(before - x[POSITION], gnss_age)
 
     # handing over
 
     def _estimate(self, aiding: Aiding, params: AirParams, dt: float) -> Estimate:
         filter_, x = aiding.filter, aiding.filter.state.x
         age = self._t - self._sampled
-        back, slower = self._handover.step(dt)
         velocity = x[VELOCITY] + age * self._acceleration
-        vn, ve, vd = (velocity + slower).tolist()
-        north, east, down = (x[POSITION] + age * velocity + back).tolist()
+        vn, ve, vd = velocity.tolist()
+        north, east, down = (x[POSITION] + age * velocity + self._handover.step(dt)).tolist()
         bias = x[GYRO_BIAS].tolist()
         p, q, r = ((g.value or 0.0) - b for g, b in zip(self._gyros, bias, strict=True))
         roll, pitch, yaw = self._ahead(aiding, (p, q, r), age)

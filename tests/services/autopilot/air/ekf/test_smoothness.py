@@ -1,11 +1,10 @@
-"""What guidance and control are told is smooth: the noise of pressures and receivers does not go into the surfaces."""
+"""The airspeed that control is told is smooth: the noise of the pressures does not go into the surfaces."""
 
 import numpy as np
 import pytest
 
-from tests.services.autopilot.air.ekf.flying import DT, SPEED, Flown, fly
+from tests.services.autopilot.air.ekf.flying import DT, SPEED
 from uvf.estimation.ekf.air import AirData
-from uvf.estimation.ekf.handover import EACH, Handover
 from uvf.estimation.sensor_inputs import Pressures
 from uvf.maths import atmosphere
 
@@ -40,28 +39,3 @@ def test_what_it_gains_itself_is_told_at_once_and_a_gust_as_soon_as_gusts_are_kn
     step = np.where(t < 10.0, SPEED, SPEED + 2.0)
     arrives = {walk: np.flatnonzero(smoothed(step, 0 * t, walk, 0.0) > SPEED + 1.0)[0] * DT - 10.0 for walk in (STILL, GUSTY)}
     assert arrives[GUSTY] < 0.15 < arrives[STILL] < 1.0
-
-
-def test_a_fix_moves_what_is_told_within_its_time_and_not_at_once():
-    handover = Handover()
-    handover.take(np.array((1.0, 0.0, -0.5)), np.array((0.0, 0.2, 0.0)), 0.2)
-    position, velocity = handover.step(DT)
-    assert position == pytest.approx((1.0, 0.0, 0.0), abs=0.05) and velocity == pytest.approx((0.0, 0.2, 0.0), abs=0.01)
-    assert position[2] == 0.0  # heights are told as they are known
-    for _ in range(round(4 * EACH / DT)):
-        position, velocity = handover.step(DT)
-    assert np.abs(position).max() < 0.03 and np.abs(velocity).max() < 0.01
-
-
-def test_in_flight_the_places_told_go_with_the_velocity_told():
-    """Between two cycles the position moves by what the velocity says: a fix is no jump."""
-    places, velocities = [], []
-
-    def seen(_, now):
-        places.append((now.north, now.east))
-        velocities.append((now.ground_speed * np.cos(now.course), now.ground_speed * np.sin(now.course)))
-
-    fly(Flown(seed=3), 30.0, seen)
-    moved, told = np.diff(places, axis=0) / DT, np.array(velocities)[1:]
-    late = len(moved) // 2
-    assert np.abs(moved - told)[late:].max() < 0.35  # m/s; a fix that is taken at once moves it by 1 to 3 m/s for a cycle
