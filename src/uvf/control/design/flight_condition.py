@@ -6,7 +6,6 @@ from uvf.maths.state_space import Floats, StateSpace
 
 DEAD_TIME = 0.03  # s: a sample of the IMU, a cycle of the autopilot and half of one that the servos hold
 GYRO_TIME, FORCE_TIME, AIRSPEED_TIME = 0.02, 0.15, 0.25  # s, of the estimator's filters
-GYRO_NOISE = 0.0023 * 0.1  # rad/s/sqrt(Hz), of small MEMS gyroscopes
 
 
 @dataclass(frozen=True)
@@ -43,10 +42,6 @@ class FlightCondition:
     lateral: StateSpace
     ground_speed: float  # m/s
     span: float  # m
-
-    def with_wind(self, along: float) -> "FlightCondition":
-        """The same with a wind ``along`` [m/s] from behind."""
-        return replace(self, ground_speed=self.airspeed + along)
 
 
 def scaled(model: StateSpace, factors: dict[tuple[str, str], float]) -> StateSpace:

@@ -16,6 +16,7 @@ SIGNALS = (
     *("servo_a", "servo_r", "delta_a", "delta_r"),
 )
 INPUTS = ("gust_v", "gust_p", "gust_r", "noise_p", "noise_r")
+IN_AIR = {"v": ("v",), "p": ("v", "p", "r"), "r": ("v", "p", "r")}
 LOOPS = {"path": "bank", "roll": "aileron_asked", "yaw": "rudder_asked"}
 """Where each is opened."""
 
@@ -38,12 +39,8 @@ def lateral_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays,
 
 
 def _airframe(flow: SignalFlow, flight: FlightCondition) -> None:
-    """Gusts count as the aircraft's own motion the other way, but for what is kinematic."""
     model = flight.lateral
-    for state in ("v", "p", "r", "phi", "psi"):
-        own = {by: model.slope(state, by) for by in (*model.states, *model.inputs)}
-        air = ("v",) if state == "v" else ("v", "p", "r") if state in ("p", "r") else ()
-        flow.integral(state, own | {f"gust_{by}": -own[by] for by in air})
+    flow.airframe(model, ("v", "p", "r", "phi", "psi"), IN_AIR)
     along, across = flight.airspeed * math.cos(flight.alpha), -flight.airspeed * math.sin(flight.alpha)
     flow.integral("aside", {"psi": along, "phi": across, "v": 1.0})
     flow.equal("off", {name: value / flight.ground_speed for name, value in (("psi", along), ("phi", across), ("v", 1.0))})

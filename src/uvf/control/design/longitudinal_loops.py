@@ -16,6 +16,7 @@ SIGNALS = (
     *("servo_e", "servo_t", "delta_e", "delta_t"),
 )
 INPUTS = ("gust_u", "gust_w", "gust_q", "noise_q", "noise_airspeed")
+IN_AIR = {"u": ("u", "w"), "w": ("u", "w"), "q": ("u", "w", "q")}
 LOOPS = {"height": "pitch", "pitch": "elevator_asked", "airspeed": "throttle_asked"}
 """Where each is opened."""
 
@@ -41,12 +42,8 @@ def longitudinal_flow(
 
 
 def _airframe(flow: SignalFlow, flight: FlightCondition) -> None:
-    """Gusts count as the aircraft's own motion the other way, but for what is kinematic."""
     model = flight.longitudinal
-    for state in ("u", "w", "q", "theta"):
-        own = {by: model.slope(state, by) for by in (*model.states, *model.inputs)}
-        air = ("u", "w") if state in ("u", "w") else ("u", "w", "q") if state == "q" else ()
-        flow.integral(state, own | {f"gust_{by}": -own[by] for by in air})
+    flow.airframe(model, ("u", "w", "q", "theta"), IN_AIR)
     up = {by: model.slope("h", by) for by in model.states}
     flow.equal("climb", up)
     flow.integral("h", {"climb": 1.0})

@@ -8,6 +8,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.maths.state_space import StateSpace
+
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Terms = Mapping[str, complex | float | Complex]
@@ -43,6 +45,15 @@ class SignalFlow:
         """The signal follows the sum of the terms with a time constant [s]; at once with 0."""
         self._order += int(time > 0.0)
         self._set(name, 1.0 + time * self.s, terms)
+
+    def airframe(self, model: StateSpace, states: Sequence[str], in_air: Mapping[str, Sequence[str]]) -> None:
+        """The rates of change of a model's states. Gusts count as the aircraft's own motion the other way, but for what is kinematic.
+
+        in_air: by state, the motions ``x`` of which it depends through the air; the input ``gust_x`` goes with each.
+        """
+        for state in states:
+            own = {by: model.slope(state, by) for by in (*model.states, *model.inputs)}
+            self.integral(state, own | {f"gust_{by}": -own[by] for by in in_air.get(state, ())})
 
     def _set(self, name: str, own: complex | Complex, terms: Terms) -> None:
         row = self._row[name]
