@@ -118,6 +118,7 @@ def tune(
     name: NameArgument,
     write: Annotated[bool, typer.Option("--write", help="Put the figures into the vehicle.yaml.")] = False,
     picture: Annotated[Path | None, typer.Option(help="Where to draw loops and step responses, a .png.")] = None,
+    firmness: Annotated[float, typer.Option(min=0.2, max=5.0, help="Above 1: nearer to the path, for more motion of the surfaces.")] = 1.0,
 ) -> None:
     """The autopilot's figures of an aircraft from its own model: balance, gains, limits, and the loops' margins."""
     from rich.console import Console
@@ -126,7 +127,7 @@ def tune(
     from launch.vehicles.inspection import folder_of
 
     with bad_input_is_one_line():
-        found = tuning.tune(folder_of(name, _vehicles()))
+        found = tuning.tune(folder_of(name, _vehicles()), firmness)
         if picture is not None:
             tuning.draw(found, picture)
         written = tuning.write(found) if write else None

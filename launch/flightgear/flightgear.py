@@ -38,9 +38,9 @@ class Feed:
 
     def __init__(self, body: AirBody, tangent: LocalTangent) -> None:
         self._tangent = tangent
-        flap, aileron, rudder = (getattr(body.controls, name).limit for name in ("flap", "aileron", "rudder"))
+        flap, aileron, rudder = body.controls.flap, body.controls.aileron, body.controls.rudder
         sides = {"left_flap": flap, "right_flap": flap, "left_aileron": aileron, "right_aileron": aileron}
-        self._limits = {"elevator": body.controls.elevator.limit, **sides, "left_rudder": rudder}
+        self._surfaces = {"elevator": body.controls.elevator, **sides, "left_rudder": rudder}
 
     def seen(self, truth: NavState, joints: JointStates | None, imu: Imu | None) -> Seen:
         """The state for FlightGear; without joints the surfaces are centred, without an IMU the specific force is 1 g upwards."""
@@ -61,7 +61,7 @@ class Feed:
             through_air=rotate(body_from_world, velocity - array(truth.wind)) * FRD,
             specific_force=array(imu.specific_force) * FRD if imu is not None else AT_REST,
             rpm=max((abs(joint.velocity) for joint in told if joint.name.endswith("propeller")), default=0.0) * RPM,
-            surfaces=tuple(deflection(name, angles) / limit for name, limit in self._limits.items()),
+            surfaces=tuple(surface.norm(deflection(name, angles)) for name, surface in self._surfaces.items()),
         )
 
 

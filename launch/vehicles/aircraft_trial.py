@@ -9,12 +9,12 @@ import numpy as np
 
 from launch.vehicles.aircraft_rules import ABOUT_LEVEL, HEIGHT, RIGHT_WAY, SEA_LEVEL, comes_to_rest, effect, throttle_works
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import InitialState
+from services.sim_air.engine.states import Held, InitialState
 from services.sim_air.engine.trim import Trim
 from services.sim_air.engine.wiring import Controls
 from uvf.models.importing.notes import Notes
 from uvf.models.jsbsim.model_parts import Unmade, properties_read
-from uvf.models.vehicle.air import AirBody, Lever
+from uvf.models.vehicle.air import AirBody, Lever, Surface
 from uvf.models.yaml_data import BadInput
 
 RATES = (120.0, 240.0, 480.0, 960.0, 1920.0)  # Hz; the first is JSBSim's own
@@ -23,6 +23,8 @@ USEFUL = (0.1, 0.9)  # throttle of a cruise from which there is something left t
 TURNS = 200  # physics steps after which a surface stands
 TRAVEL = {"aileron": "left_aileron", "elevator": "elevator", "rudder": "rudder", "flap": "flap"}
 LEAST = 0.02  # rad of travel that is one
+UNEQUAL = 0.1  # of the travel, between both ends, from which on it is told
+NOTHING = 1e-4  # m/s^2 or rad/s^2
 
 
 def tried(folder: Path, body: AirBody, notes: Notes) -> AirBody:
@@ -76,7 +78,7 @@ def _with_signs(airframe: Airframe, body: AirBody, notes: Notes) -> AirBody:
     for name, (index, sign, _) in RIGHT_WAY.items():
         if (effect(airframe, start, ABOUT_LEVEL, body.controls, name) - at_rest)[index] * sign < 0:
             surface = msgspec.structs.replace(getattr(body.controls, name), sign=-1)
-            body = msgspec.structs.replace(body, controls=msgspec.structs.replace(body.controls, **{name: surface}))
+            body = _with(body, name, surface)
             notes.add("found: the sign is turned of", name)
     return body
 
@@ -90,11 +92,29 @@ def _with_travel(airframe: Airframe, body: AirBody, notes: Notes) -> AirBody:
         ends = [_stands(airframe, Controls(**{name: end * control.limit})).get(joint, 0.0) for end in stops]
         travel = abs(ends[1] - ends[0]) / (1 if name == "flap" else 2)
         if travel < LEAST:
-            notes.add("guessed: the travel is not told of", name)
+            if name == "flap" and not _lifts(airframe, body):
+                body = _with(body, "flap", msgspec.structs.replace(control, limit=0.0))
+                notes.add("found: it has no flaps")
+            else:
+                notes.add("guessed: the travel is not told of", name)
             continue
+        if name != "flap" and abs(abs(ends[0]) - abs(ends[1])) > UNEQUAL * travel:
+            first, last = (round(abs(end), 3) for end in ends)
+            notes.add(f"found: the {name} goes {last:g} rad one way and {first:g} the other; taken as {round(travel, 3):g} to both sides")
         surface = msgspec.structs.replace(control, limit=round(min(travel, 1.6), 3))
-        body = msgspec.structs.replace(body, controls=msgspec.structs.replace(body.controls, **{name: surface}))
+        body = _with(body, name, surface)
     return body
+
+
+def _with(body: AirBody, name: str, surface: Surface) -> AirBody:
+    return msgspec.structs.replace(body, controls=msgspec.structs.replace(body.controls, **{name: surface}))
+
+
+def _lifts(airframe: Airframe, body: AirBody) -> bool:
+    """Whether flaps that are lowered do anything in flight."""
+    held = Held(np.array((body.trim_speed, 0.0, 0.0)), np.zeros(3), np.zeros(3), HEIGHT)
+    up, down = (airframe.accelerations_held(held, Controls(flap=flap)) for flap in (0.0, body.controls.flap.limit))
+    return bool(np.abs(down - up).max() > NOTHING)
 
 
 def _stands(airframe: Airframe, controls: Controls) -> dict[str, float]:

@@ -10,15 +10,15 @@ import msgspec
 import yaml
 
 from launch.vehicles.air_design import modelled, timing
-from launch.vehicles.aircraft_rules import SEA_LEVEL
+from launch.vehicles.aircraft_rules import SEA_LEVEL, stands
 from launch.vehicles.aircraft_trial import tried
 from launch.vehicles.autopilot_guess import autopilot_figures
 from launch.vehicles.tuning import rounded
 from services.sim_air.engine.airframe import Airframe
-from uvf.control.design.gain_search import LATERAL, LONGITUDINAL, begun
+from uvf.control.design.gain_search import FINAL, LATERAL, LONGITUDINAL, begun
 from uvf.maths.atmosphere import RHO0
 from uvf.maths.geodesy import GRAVITY
-from uvf.models.importing.jsbsim import copy_model
+from uvf.models.importing.jsbsim import copy_model, has_actuators
 from uvf.models.importing.notes import Notes
 from uvf.models.jsbsim.model_file import weight_and_wing
 from uvf.models.vehicle.air import AirBody, CommandProperties
@@ -65,10 +65,12 @@ def _described(vehicle: str, model: str) -> tuple[dict[str, Any], list[str]]:
     """vehicle: path of its folder. What its file says, and the notes."""
     folder, notes = Path(vehicle), Notes()
     mass, wing = weight_and_wing(folder / model / f"{model}.xml")
-    rate, lag = SERVOS[mass < LIGHT]
+    own = has_actuators(folder / model / f"{model}.xml")
+    rate, lag = (None, 0.0) if own else SERVOS[mass < LIGHT]
     speed = float(f"{math.sqrt(2 * mass * GRAVITY / (RHO0 * wing * LIFT)):.2g}")
     body = tried(folder, AirBody(model=model, physics_hz=120.0, trim_speed=speed, servo_rate=rate, servo_lag=lag), notes)
-    notes.add(f"guessed: servos of {rate:g} rad/s with a lag of {lag:g} s, sensors, the sink rate that the landing gear holds")
+    servos = "found: servos in the model" if own else f"guessed: servos of {rate:g} rad/s with a lag of {lag:g} s"
+    notes.add(f"{servos}; guessed: sensors, the sink rate that the landing gear holds")
     data: dict[str, Any] = {"kind": "fixed_wing", "about": "", "air": _air(body), "sensors": SENSORS}
     if figures := _autopilot(folder, body, notes):
         data["params"] = {"autopilot_air": figures}
@@ -86,13 +88,23 @@ def _air(body: AirBody) -> dict[str, Any]:
     return {key: getattr(body, key) for key in keys} | {"controls": controls} | ({"settings": body.settings} if body.settings else {})
 
 
+def _gear(folder: Path, body: AirBody, notes: Notes) -> dict[str, float]:
+    """How high the aircraft stands on its wheels."""
+    standing = stands(folder, body, body.physics_hz)
+    if standing is None:
+        return {}
+    height, pitch = standing
+    notes.add(f"found: it stands {height:.2f} m high, its nose {abs(math.degrees(pitch)):.0f} degrees {'up' if pitch >= 0 else 'down'}")
+    return {"gear_height": float(f"{height:.3g}")}
+
+
 def _autopilot(folder: Path, body: AirBody, notes: Notes) -> dict[str, float]:
     airframe = Airframe(folder, body, SEA_LEVEL)
     if not airframe.powered:
         notes.add("no autopilot figures: it has no engine, and glides")
         return {}
     try:
-        figures = autopilot_figures(airframe, body)
+        figures = autopilot_figures(airframe, body) | _gear(folder, body, notes)
         known = msgspec.structs.replace(AirParams(), **figures)
         aircraft = modelled(airframe, body, known)
         params = rounded(begun(aircraft.loops, known))
@@ -104,6 +116,5 @@ def _autopilot(folder: Path, body: AirBody, notes: Notes) -> dict[str, float]:
     if unstable:
         notes.add(f"with these gains it is unstable at {unstable[0].airspeed:.0f} m/s")
     notes.add("'uvf vehicle tune NAME --write' designs its gains and shows their margins")
-    gains = {name: getattr(params, name) for name in (*LATERAL, *LONGITUDINAL)}
-    gains |= {"final_climb_p": params.climb_p, "final_pitch_time": params.pitch_time}
+    gains = {name: getattr(params, name) for name in (*LATERAL, *LONGITUDINAL, *FINAL)}
     return figures | gains | timing(aircraft, params, body.controls.aileron.limit)

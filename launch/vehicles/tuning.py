@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import msgspec
@@ -15,14 +16,14 @@ from launch.vehicles.linearize import airframe_of
 from launch.vehicles.parameter_lines import SERVICE, with_params
 from uvf.control.design import lateral_loops, longitudinal_loops
 from uvf.control.design.aircraft_loops import OMEGA, Loop
-from uvf.control.design.gain_search import GAIN, LATERAL, LONGITUDINAL, PEAK, PHASE, begun, designed
+from uvf.control.design.gain_search import FINAL, GAIN, LATERAL, LONGITUDINAL, PEAK, PHASE, begun, designed
 from uvf.control.design.margins import step_response
-from uvf.control.design.signal_flow import Floats
+from uvf.control.design.signal_flow import Floats, SignalFlow
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.yaml_data import BadInput, FileLocation, convert
 
-GAINS = (*LATERAL, "rudder_mix", *LONGITUDINAL)
+GAINS = (*LATERAL, "rudder_mix", *LONGITUDINAL, *FINAL)
 SECONDS = 6.0  # of the step responses
 
 
@@ -40,6 +41,13 @@ class Tuning:
     params: AirParams
     loops: list[Loop]
     spread: list[Loop]
+
+    @cached_property
+    def cruise(self) -> tuple[SignalFlow, SignalFlow]:
+        """Lateral and longitudinal loops in cruise."""
+        flight, delays, params = self.aircraft.cruise, self.aircraft.loops.delays, self.params
+        lateral = lateral_loops.lateral_flow(OMEGA, flight, delays, params)
+        return lateral, longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, params)
 
     @property
     def unmet(self) -> list[str]:
@@ -81,17 +89,16 @@ def least(loops: Sequence[Loop]) -> tuple[float, float, float]:
     return min(gains, default=np.nan), min(phases, default=np.nan), max(loop.margins.peak for loop in loops)
 
 
-def tune(folder: Path) -> Tuning:
-    """Tunes the autopilot for the aircraft in ``folder`` from its own model. Raises BadInput."""
+def tune(folder: Path, firmness: float = 1.0) -> Tuning:
+    """Tunes the autopilot for the aircraft in ``folder`` from its own model; firmness as of ``designed``. Raises BadInput."""
     airframe, file = airframe_of(folder), load_vehicle(folder.parent, folder.name)
     assert file.air is not None
     before = convert(file.params.get(SERVICE, {}), AirParams, str(folder / "vehicle.yaml"), ("params", SERVICE))
     measured = autopilot_figures(airframe, file.air)
     params = msgspec.structs.replace(before, **measured)
     aircraft = modelled(airframe, file.air, params)
-    params = rounded(designed(aircraft.loops, begun(aircraft.loops, aircraft.with_mix(params))))
+    params = rounded(designed(aircraft.loops, begun(aircraft.loops, aircraft.with_mix(params)), firmness))
     figures = measured | {name: getattr(params, name) for name in GAINS}
-    figures |= {"final_climb_p": params.climb_p, "final_pitch_time": params.pitch_time}  # as firm as margins allow already
     figures |= {name: float(f"{value:.3g}") for name, value in timing(aircraft, params, file.air.controls.aileron.limit).items()}
     params = msgspec.structs.replace(params, **figures)
     was = {name: getattr(before, name) for name in figures}
@@ -127,10 +134,7 @@ def draw(tuning: Tuning, path: Path) -> None:
     """Draws the gain of the open loops in cruise, and the response of bank and pitch to a commanded step."""
     figure = Figure(figsize=(10.0, 4.0), layout="constrained")
     bode, step = figure.subplots(1, 2)
-    aircraft, params = tuning.aircraft, tuning.params
-    lateral = lateral_loops.lateral_flow(OMEGA, aircraft.cruise, aircraft.loops.delays, params)
-    longitudinal = longitudinal_loops.longitudinal_flow(OMEGA, aircraft.cruise, aircraft.loops.delays, params)
-    for flow, opened in ((lateral, lateral_loops.LOOPS), (longitudinal, longitudinal_loops.LOOPS)):
+    for flow, opened in zip(tuning.cruise, (lateral_loops.LOOPS, longitudinal_loops.LOOPS), strict=True):
         for name, at in opened.items():
             bode.semilogx(OMEGA, 20 * np.log10(np.abs(flow.loop(at))), label=name)
     t = np.linspace(0.0, SECONDS, 301)
@@ -146,9 +150,7 @@ def draw(tuning: Tuning, path: Path) -> None:
 
 def steps(tuning: Tuning, t: Floats) -> dict[str, Floats]:
     """Bank and pitch (k,) at times ``t`` (k,) [s] after their command has risen by one, in cruise."""
-    aircraft, params = tuning.aircraft, tuning.params
-    lateral = lateral_loops.lateral_flow(OMEGA, aircraft.cruise, aircraft.loops.delays, params)
-    longitudinal = longitudinal_loops.longitudinal_flow(OMEGA, aircraft.cruise, aircraft.loops.delays, params)
+    lateral, longitudinal = tuning.cruise
     bank = lateral.closed("phi", "bank") / lateral.closed("bank", "bank")
     pitch = longitudinal.closed("theta", "pitch") / longitudinal.closed("pitch", "pitch")
     return {"bank": step_response(OMEGA, bank, t), "pitch": step_response(OMEGA, pitch, t)}

@@ -5,9 +5,11 @@ import math
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS, cruising
+from uvf.control.attitude_loops import PitchLoop
 from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint
+from uvf.control.cycle import Cycle
 from uvf.control.flight_control import FlightControl
-from uvf.control.servos import SERVOS
+from uvf.control.servos import SERVOS, ServoLimits, Servos
 
 LEVEL = AltitudeAirspeedSetpoint(bank=0.0, height=60.0, climb=0.0, airspeed=25.0)
 
@@ -102,3 +104,43 @@ def test_from_an_attitude_to_a_height_pitch_and_throttle_go_on_from_where_they_w
     taken = control.step(now, LEVEL, PARAMS, 0.02)
     assert taken.throttle == pytest.approx(held.throttle, abs=0.002)
     assert taken.elevator == pytest.approx(held.elevator, abs=0.002)
+
+
+def rolls(now, servos=SERVOS):
+    """Aileron [rad] of an aircraft that is banked already and asked for a steep turn."""
+    return FlightControl(servos).step(now, AltitudeAirspeedSetpoint(1.05, 60.0, 0.0, 25.0), PARAMS, 0.02).aileron
+
+
+def test_far_too_low_and_sinking_the_lift_is_for_the_climb_before_the_turn():
+    level = rolls(cruising(roll=0.9, lift=15.0))
+    assert rolls(cruising(roll=0.9, lift=15.0, height=40.0, climb=-8.0)) < 0 < level
+    assert rolls(cruising(roll=0.9, lift=15.0, height=80.0, climb=8.0)) == level
+
+
+def test_a_turn_that_the_elevator_cannot_carry_is_not_asked_for():
+    weak = Servos(ServoLimits(0.35), ServoLimits(0.15), ServoLimits(0.35))
+    assert rolls(cruising(roll=0.9, lift=15.0), weak) < 0
+
+
+def test_while_the_elevator_is_at_its_stop_the_bank_gives_way_and_comes_back_later():
+    loop, level = PitchLoop(SERVOS), Cycle(cruising(), PARAMS, 0.02)
+    first = loop.bank_limit(level)
+    for _ in range(150):
+        stopped = loop.step(Cycle(cruising(pitch=-0.4, q=-0.5), PARAMS, 0.02), 0.4)
+    assert stopped == -SERVOS.elevator.limit
+    given = loop.bank_limit(level)
+    assert given < first - 0.1
+    for _ in range(500):
+        loop.step(level, cruising().pitch)
+    assert loop.bank_limit(level) > given + 0.05
+
+
+def test_a_nose_is_raised_as_quickly_in_a_turn_as_with_level_wings():
+    """Of the rate about the pitch axis only the cosine of the bank raises the nose."""
+    pulls = []
+    for roll in (0.0, 0.8):
+        turning = 9.80665 / 25.0 * math.sin(roll) * math.tan(roll)
+        now = cruising(roll=roll, q=turning)
+        held = [FlightControl(SERVOS).hold(now, AttitudeSetpoint(roll, pitch, 0.5), PARAMS, 0.02).elevator for pitch in (0.0, 0.05)]
+        pulls.append(held[0] - held[1])
+    assert pulls[1] == pytest.approx(pulls[0] / math.cos(0.8), rel=0.05)

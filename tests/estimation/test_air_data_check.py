@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS, G, cruising
@@ -48,3 +49,25 @@ def test_a_front_of_wind_is_no_fault_and_a_tube_that_reads_too_little_is():
     assert judged(true=18.0, reads=18.0, ground=26.0) == 0.0
     assert judged(true=26.0, reads=17.0, ground=26.0) < -7.0
     assert judged(true=25.0, reads=0.0, ground=25.0) < -20.0
+
+
+def in_gusts(size, seconds, then):
+    """(gaps of every cycle in gusts of ``size`` [m/s, RMS], the gap two seconds after the tube reads ``then`` [m/s])."""
+    check, rng, gust, gaps = AirDataCheck(), np.random.default_rng(3), 0.0, []
+    for t in range(round((seconds + 2.0) / DT)):
+        gust += (-gust * DT + size * math.sqrt(2 * DT) * rng.standard_normal()) / 2.0
+        felt = 25.0 + gust
+        read = felt if t * DT < seconds else then
+        static = STATIC + 0.1 * (t % 7)
+        said = Pressures(static, 0.5 * RHO0 * read**2 + 1e-6 * t, 288.15)
+        now = flying_at(felt, ground_speed=25.0, pitch=0.1 + 0.06 * math.sin(0.3 * t * DT))
+        check.step((t, said), FlightState(now, 0.0, True), PARAMS, DT)
+        gaps.append(check.gap)
+    return gaps[: round(seconds / DT)], gaps[-1]
+
+
+@pytest.mark.parametrize("size", [0.5, 2.0, 3.0])
+def test_gusts_are_no_fault_and_a_dead_tube_is_found_in_them(size):
+    gaps, after = in_gusts(size, 600.0, then=0.0)
+    assert not any(gaps)
+    assert after < -15.0

@@ -84,3 +84,14 @@ def test_too_sharp_a_corner_is_pointed_out():
     assert list(advice([waypoint(0.0), waypoint(400.0), waypoint(0.0, 5.0)], PARAMS)) == [
         ("item 1: a curve is flown past it", "a corner of 179 degrees is too sharp to be rounded")
     ]
+
+
+@pytest.mark.parametrize(("height", "name"), [(160.0, "climb_max"), (20.0, "sink_max")])
+def test_a_slope_steeper_than_the_aircraft_climbs_or_sinks_is_pointed_out(height, name):
+    most = getattr(PARAMS, name)
+    way = abs(height - HERE.height) * 25.0 / most
+    end = [PlanItem(ItemKind.WAYPOINT, Place(0.0, length, height)) for length in (0.8 * way, 1.1 * way)]
+    ((what, why),) = advice([PlanItem(ItemKind.WAYPOINT, Place(0.0, 0.0, HERE.height)), end[0]], PARAMS)
+    assert what == "item 1: its height is not reached on the way there"
+    assert re.fullmatch(rf"the slope is \d\.\d m/s at 25 m/s, {name} is {most:g} m/s: make the leg {math.ceil(way)} m long, or slower", why)
+    assert list(advice([PlanItem(ItemKind.WAYPOINT, Place(0.0, 0.0, HERE.height)), end[1]], PARAMS)) == []

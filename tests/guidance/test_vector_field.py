@@ -2,12 +2,14 @@
 
 import math
 
+import msgspec
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS, Kinematic, cruising
 from uvf.guidance.vector_field import LateralGuidance, line_reference, orbit_reference
 
 NORTH = (1.0, 0.0)
+PARAMS0 = msgspec.structs.replace(PARAMS, lead_time=0.0, bank_time=0.0)
 
 
 def line(now):
@@ -57,3 +59,28 @@ def test_an_orbit_is_joined_and_held_whatever_the_wind(radius, wind):
     seen = Kinematic(north=-300.0, wind=wind).follow(lambda now: orbit_reference((0.0, 0.0), radius, (now.north, now.east), PARAMS), 90.0)
     held = [math.hypot(now.north, now.east) for now in seen[2500:]]
     assert max(abs(r - 90.0) for r in held) < 2.0
+
+
+def test_on_a_circle_in_wind_it_banks_for_the_speed_over_ground_that_it_will_have():
+    """Tail wind is to come: the bank is ahead of that of now by the time in which the aircraft follows it."""
+    slow = msgspec.structs.replace(PARAMS, lead_time=0.6, bank_time=0.4)
+    north_of_it = cruising(north=100.0, course=math.pi / 2, yaw=math.pi / 2 + math.asin(-8.0 / 25.0), wind_north=8.0)
+    # Clockwise at the north of the circle the course turns south, against a wind that blows north.
+    aim = orbit_reference((0.0, 0.0), 100.0, (100.0, 0.0), slow)
+    late, early = (LateralGuidance().bank(aim, north_of_it, params, 0.02) for params in (PARAMS0, slow))
+    assert early < late - 0.03
+
+
+@pytest.mark.parametrize("radius", [90.0, -90.0])
+def test_an_orbit_in_strong_wind_is_held_by_an_aircraft_that_rolls_slowly(radius):
+    known = msgspec.structs.replace(PARAMS, lead_time=0.0, bank_time=PARAMS.roll_time)
+    flyer = Kinematic(north=-300.0, wind=(10.0, 0.0), params=known)
+    seen = flyer.follow(lambda now: orbit_reference((0.0, 0.0), radius, (now.north, now.east), known), 120.0)
+    held = [math.hypot(now.north, now.east) for now in seen[3000:]]
+    assert max(abs(r - 90.0) for r in held) < 0.5
+
+
+def test_joining_a_line_from_far_teaches_the_integrator_nothing():
+    flyer = Kinematic(east=60.0)
+    flyer.follow(line, 40.0)
+    assert abs(flyer.steering._trim.value) < 0.002

@@ -118,7 +118,7 @@ class ActiveMode:
     def _stands(self) -> bool:
         """On the ground with nothing to do: surfaces neutral, motor off, brakes on."""
         moves = TABLE[self.mode].on_ground and (self.context.hand is not None if TABLE[self.mode].is_manual else self.context.armed)
-        return not self.context.airborne and not moves and not self._rolls_out
+        return not self.context.airborne and not moves and not self.rolls_out
 
     @property
     def blocked(self) -> str:
@@ -126,7 +126,8 @@ class ActiveMode:
         return refusal(FlightMode.ORBIT, self._situation)
 
     @property
-    def _rolls_out(self) -> bool:
+    def rolls_out(self) -> bool:
+        """Its wheels carry it after a landing."""
         descends = isinstance(self._phase, DescendMode) and self._phase.rolls
         return descends or (self.landing is not None and self.landing.rolls)
 
@@ -136,4 +137,4 @@ class ActiveMode:
         self._stick.take()
 
     def _refused(self, mode: FlightMode) -> str:
-        return refusal(mode, self._situation) or (ROLLS_OUT if self._rolls_out else "")
+        return refusal(mode, self._situation) or (ROLLS_OUT if self.rolls_out else "")

@@ -8,7 +8,7 @@ from services.autopilot.air.fence_guard import FenceGuard, kept
 from services.autopilot.air.setpoints import PathSetpoint, Setpoint
 from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.cycle import Cycle, clip
-from uvf.control.flight_control import FlightControl
+from uvf.control.flight_control import FlightControl, on_final
 from uvf.control.servos import Servos
 from uvf.estimation.state import Estimate
 from uvf.guidance.vector_field import LateralGuidance
@@ -39,7 +39,7 @@ class FlightController:
             self._flap = asked.flap
             return asked
         if wish.firm:
-            params = msgspec.structs.replace(params, climb_p=params.final_climb_p, pitch_time=params.final_pitch_time)
+            params = on_final(params)
         self._flap += min(max(wish.flap - self._flap, -FLAP_RATE * dt), FLAP_RATE * dt)
         flap = self._lifting(wish.lift, now, params, dt)
         if self._flap > 0:

@@ -224,7 +224,7 @@ class ModeManager(ActiveMode):
 
     def descend(self, now: Estimate, reason: str, params: AirParams) -> None:
         """Mode Land without a position: down where it is."""
-        if self._rolls_out or isinstance(self._phase, DescendMode):
+        if self.rolls_out or isinstance(self._phase, DescendMode):
             return
         circle = self.circle or Circle.ahead(now, now.height, params.hold_radius)
         self._change(FlightMode.LAND, reason)
@@ -276,7 +276,7 @@ class ModeManager(ActiveMode):
 
     def stop(self, source: str) -> None:
         """STOP ALL: an airborne aircraft holds until it is released (an empty source)."""
-        if source and not self.stopped and not self._rolls_out:
+        if source and not self.stopped and not self.rolls_out:
             self._change(FlightMode.HOLD, f"stopped by {source}")
         elif self.stopped and not source:
             self.reason = "stop released"
@@ -289,7 +289,7 @@ class ModeManager(ActiveMode):
         """
         row, was, self._blind = TABLE[self.mode], self._blind, blind
         needs, holds = Need.POSITION in row.keeps, self.mode is FlightMode.HOLD
-        if self.stopped or self._rolls_out or self._settles or not (needs or holds):
+        if self.stopped or self.rolls_out or self._settles or not (needs or holds):
             return
         if blind and not isinstance(self._phase, DescendMode) and (needs or not was):
             self._change(row.without, "GNSS lost: holds by dead reckoning" if row.without is FlightMode.HOLD else "GNSS lost")

@@ -76,7 +76,7 @@ class AutopilotAir(Service):
         self._safety = FailsafeMonitor(self._mode_manager, config.servos)
         self._safety.set_fence(config.fence, None, params)
         self._journal = EventLog()
-        self._journal.note(advice(self._mode_manager.navigator.items, params))
+        self._journal.new_mission(advice(self._mode_manager.navigator.items, params))
         self._plans = ActivePlans(config.items, self._mode_manager, self._safety, self._journal)
         self._sensing = StateEstimation(config.instruments, config.tangent, params.estimator, self._safety.believed)
         self._surfaces = STICK_RELEASED
@@ -94,7 +94,8 @@ class AutopilotAir(Service):
         if self._reboots:
             self._reboot()
         samples = [sample for m in now.imu if (sample := intake.inertial(m, t)) is not None]
-        estimate = self._sensing.step(t, SensorInputs(samples, now.air_data, now.gnss, self._land.airborne), self.params, 1 / self.hz)
+        carried = self._land.airborne and not self._mode_manager.rolls_out
+        estimate = self._sensing.step(t, SensorInputs(samples, now.air_data, now.gnss, carried), self.params, 1 / self.hz)
         self._now = estimate
         if estimate is None:
             return self._without_fix(t, now)

@@ -107,7 +107,10 @@ class Airframe:
         return trim
 
     def stand(self, place: InitialState) -> None:
-        """Puts the aircraft on its wheels, at rest, brakes on, motor off. Raises BadInput when it does not come to rest on them."""
+        """Puts the aircraft on its wheels, at rest, brakes on, motor off. Raises BadInput when it does not come to rest on them.
+
+        One that rolls on, idling, because it has no brakes, stands too.
+        """
         self.drop(place, 0.0)
         try:
             settled = self._settled()
@@ -143,7 +146,7 @@ class Airframe:
         for _ in range(round(SETTLE * self._body.physics_hz)):
             self.step()
             motion = self.motion()
-            moves = max(np.linalg.norm(motion.velocity), np.linalg.norm(motion.angular_velocity))
+            moves = max(abs(motion.velocity[2]), np.linalg.norm(motion.angular_velocity))
             quiet = quiet + 1 if moves < AT_REST else 0
             if quiet >= self._body.physics_hz:
                 return bool(motion.position[2] > self._ground.under(motion.position))

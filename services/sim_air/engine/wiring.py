@@ -78,7 +78,7 @@ class Wiring:
     def _command(self, name: str, body: AirBody, place: FileLocation) -> list[tuple[str, str, float]]:
         """(command, property, factor) of one command; standard names that the model has not are left out."""
         control = getattr(body.controls, name)
-        scale = control.sign / control.limit if isinstance(control, Surface) else 1.0
+        scale = control.norm(control.sign) if isinstance(control, Surface) else 1.0
         if control.property:
             targets = [self._there(target, place.at("property")) for target in body.controls.properties(name)]
         elif name == "throttle":

@@ -45,6 +45,8 @@ class AirshipAttitude:
 class AirshipPath:
     """Height or climb rate to pitch, airspeed to throttle, with their integrators."""
 
+    lacking = 0.0
+
     def __init__(self) -> None:
         self._pitch = Integral(PITCH_TRIM_LIMIT)
         self._throttle = Integral(THROTTLE_TRIM_LIMIT)

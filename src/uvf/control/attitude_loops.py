@@ -7,19 +7,38 @@ Surface gains hold at the trim airspeed and are scaled with dynamic pressure.
 import math
 
 from uvf.control.commands import AttitudeSetpoint, Surfaces
-from uvf.control.cycle import FULL_BANK, Cycle, clip
+from uvf.control.cycle import FULL_BANK, LEAST, Cycle, clip
 from uvf.control.servos import Servos, SurfaceTrim
 from uvf.maths.geodesy import GRAVITY
 
 ROLL_RATE_LIMIT = 1.6  # rad/s
 PITCH_RATE_LIMIT = 0.8  # rad/s
+STEEPEST_BANK = 1.05  # rad, up to which pitch answers as quickly as with level wings
+UP_TIME = 1.0  # s, in which climb that is lacking is won back: before a turn, that gets its lift
+TURN_SHARE, LEAST_BANK = (0.3, 0.95), 0.25  # of the elevator's way that a turn may take; rad that it may always be banked
+GIVES, TAKES, AT_STOP = 0.12, 0.1, 0.98  # 1/s: that share falls while the elevator is at its stop, and rises again
 
 
 class PitchLoop:
     """Pitch to the elevator, with its integrator."""
 
     def __init__(self, servos: Servos) -> None:
-        self._trim = SurfaceTrim(servos.elevator)
+        self._trim, self._limit = SurfaceTrim(servos.elevator), servos.elevator.limit
+        self._alpha: float | None = None
+        self._share = TURN_SHARE[1]
+
+    def bank_limit(self, cycle: Cycle) -> float:
+        """Bank [rad] of the level turn that the elevator balances with a share of its way, by what it has learnt.
+
+        From a + b n + c (n - 1 / n) = share, solved for the load factor n: what level flight takes, the angle of attack and the damping.
+        """
+        params = cycle.params
+        level = params.elev_zero_alpha + params.elev_per_alpha * params.alpha_zero_lift - cycle.scale * self._trim.value
+        spare = self._share * self._limit + level
+        by_load = -params.elev_per_alpha * params.alpha_per_load * GRAVITY / cycle.eas**2
+        damping = math.sqrt(cycle.scale) * params.pitch_ff * GRAVITY / cycle.speed
+        load = (spare + math.sqrt(spare**2 + 4 * (by_load + damping) * damping)) / (2 * max(by_load + damping, LEAST))
+        return max(math.acos(min(1 / max(load, 1.0), 1.0)), LEAST_BANK)
 
     def step(self, cycle: Cycle, asked: float) -> float:
         """Elevator [rad] for a pitch asked for [rad], which is limited first."""
@@ -27,13 +46,25 @@ class PitchLoop:
         pitch = max(min(asked, cycle.highest_pitch), -params.pitch_limit)
         bank = clip(now.roll, FULL_BANK)
         turning = GRAVITY / cycle.speed * math.sin(bank) * math.tan(bank)  # q of a level coordinated turn
-        wanted = (pitch - now.pitch) / params.pitch_time * math.cos(bank)
+        upright = max(math.cos(bank), math.cos(STEEPEST_BANK))
+        wanted = (pitch - now.pitch) / params.pitch_time * math.cos(bank) / upright**2  # of q only cos(bank) raises the nose
         carried = min(cycle.load, now.lift / GRAVITY)  # lift that is lost, as the airspeed falls, is to be won back
         rate = max(min(wanted, _pull(cycle, cycle.load_limit - carried)), -_pull(cycle, params.load_max - 1)) + turning
         error = rate - now.q
-        balance = params.elev_zero_alpha + params.elev_per_alpha * cycle.alpha
+        balance = params.elev_zero_alpha + params.elev_per_alpha * self._alpha_of(cycle, math.cos(bank) + cycle.speed * rate / GRAVITY)
         moving = math.sqrt(cycle.scale) * params.pitch_ff * rate + cycle.scale * params.pitch_p * error
-        return self._trim.step(balance - moving, -cycle.scale, params.pitch_i * error, cycle.dt)
+        elevator = self._trim.step(balance - moving, -cycle.scale, params.pitch_i * error, cycle.dt)
+        spent = elevator < -AT_STOP * self._limit
+        self._share = min(max(self._share + (-GIVES if spent else TAKES) * cycle.dt, TURN_SHARE[0]), TURN_SHARE[1])
+        return elevator
+
+    def _alpha_of(self, cycle: Cycle, load: float) -> float:
+        """Angle of attack [rad] of a load factor that is asked for, which comes as lift turns the path: V / L_alpha later."""
+        params = cycle.params
+        asked = params.alpha_zero_lift + params.alpha_per_load * load * GRAVITY / cycle.eas**2
+        before = asked if self._alpha is None else self._alpha
+        self._alpha = before + (asked - before) * min(cycle.dt / max(params.alpha_per_load * cycle.speed / cycle.eas**2, LEAST), 1.0)
+        return self._alpha
 
 
 class AttitudeLoops:
@@ -47,7 +78,8 @@ class AttitudeLoops:
 
     def step(self, cycle: Cycle, wanted: AttitudeSetpoint) -> Surfaces:
         """Surface deflections [rad] and throttle [0..1] for one cycle; bank, pitch and throttle asked for are limited first."""
-        aileron = self._aileron(cycle, clip(wanted.bank, cycle.bank_limit))
+        lifted = cycle.bank_with(max(wanted.lacking, 0.0) / UP_TIME)
+        aileron = self._aileron(cycle, clip(wanted.bank, min(lifted, self._pitch.bank_limit(cycle))))
         elevator = self._pitch.step(cycle, wanted.pitch)
         return Surfaces(aileron, elevator, self._rudder(cycle, aileron, wanted.rudder), min(max(wanted.throttle, 0.0), 1.0))
 
@@ -68,7 +100,7 @@ class AttitudeLoops:
         damping = cycle.scale * params.yaw_damping * (now.r - turning)
         if given is not None:
             return clip(damping + given, self._servos.rudder.limit)
-        ahead = math.sqrt(cycle.scale) * params.rudder_ff * turning + params.rudder_mix * aileron
+        ahead = params.rudder_mix * aileron
         return self._slip.step(damping + ahead, cycle.scale, params.slip_i * now.side_force, cycle.dt)
 
 

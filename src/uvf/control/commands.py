@@ -23,6 +23,7 @@ class AttitudeSetpoint:
     pitch: float  # rad
     throttle: float  # 0..1
     rudder: float | None = None  # rad, beside the yaw damper; None: the side slip is taken out
+    lacking: float = 0.0  # m/s of climb; the bank leaves lift to win it back
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,7 @@ class Cycle:
         lifted = lifting * self.eas**2 / (per_load * GRAVITY)
         self.load_limit = min(lifted, params.load_max)
         """Load factor [-] that the wing carries at ``alpha_max`` now, and no more than ``load_max``."""
-        self.bank_limit = min(math.acos(min(1 / self.load_limit, 1.0)), params.bank_limit)
+        self.bank_limit = self.bank_with(0.0)
         """Bank [rad] of a level turn within ``load_limit``: the stall speed in the turn stays below the airspeed."""
         stalled = math.sqrt(params.alpha_per_load * self.load * GRAVITY / lifting)
         self.stalled = stalled * self.speed / self.eas
@@ -50,3 +50,7 @@ class Cycle:
 
         The angle of attack of now is that of the lift that is felt: a kinematic one would take a downdraught for a stall.
         """
+
+    def bank_with(self, upward: float) -> float:
+        """Most bank [rad] at which ``load_limit`` leaves lift for an acceleration upward [m/s^2], too."""
+        return min(math.acos(min((1 + upward / GRAVITY) / self.load_limit, 1.0)), self.params.bank_limit)

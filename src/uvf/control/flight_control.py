@@ -5,6 +5,8 @@ Either level may be asked. Changing from the lower to the upper, or from law to 
 
 from typing import Protocol
 
+import msgspec
+
 from uvf.control.airship import AirshipAttitude, AirshipPath
 from uvf.control.attitude_loops import AttitudeLoops
 from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
@@ -27,6 +29,9 @@ class AttitudeLaw(Protocol):
 
 class PathLaw(Protocol):
     """Outer control law: from height or climb rate, and airspeed, to pitch and throttle."""
+
+    lacking: float
+    """Climb rate [m/s] that the last cycle asked for beyond the present one, as far as it can be made; a law may always say 0."""
 
     def begin(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, pitch: float, throttle: float) -> None:
         """Sets the integrators so that the first step asks for ``pitch`` [rad] and ``throttle`` [0..1]: a bumpless transfer."""
@@ -62,13 +67,18 @@ class FlightControl:
             outer.begin(cycle, wanted, self._held.pitch, self._held.throttle)
         self._flown = params.law
         pitch, throttle = outer.step(cycle, wanted)
-        self._held = AttitudeSetpoint(wanted.bank, pitch, throttle, wanted.rudder)
+        self._held = AttitudeSetpoint(wanted.bank, pitch, throttle, wanted.rudder, outer.lacking)
         return self._inner[params.law].step(cycle, self._held)
 
     def hold(self, now: Estimate, wanted: AttitudeSetpoint, params: AirParams, dt: float) -> Surfaces:
         """Surfaces that hold an attitude with a given throttle by the inner loops alone, for one cycle of ``dt`` [s]."""
         self._held, self._flown = wanted, ""
         return self._inner[params.law].step(Cycle(now, params, dt), wanted)
+
+
+def on_final(params: AirParams) -> AirParams:
+    """The parameters as they are flown on the last metres before touching down; ``altitude_p`` there is that of the flare."""
+    return msgspec.structs.replace(params, climb_p=params.final_climb_p, pitch_time=params.final_pitch_time, altitude_p=params.flare_p)
 
 
 def level_trim(params: AirParams) -> Surfaces:

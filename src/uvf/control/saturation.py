@@ -30,10 +30,12 @@ class Saturation:
 
 
 def eased(params: AirParams) -> AirParams:
-    """Parameters with half the bank, climb and descent: what is still asked for while a surface is at its stop."""
+    """Parameters with half the bank of corners to come, climb and descent: what is planned with after a surface has been at its stop.
+
+    Corners that have begun are flown as they were planned: the loops bank only as far as the elevator can carry.
+    """
     return msgspec.structs.replace(
         params,
-        bank_limit=SHARE * params.bank_limit,
         turn_bank=SHARE * params.turn_bank,
         climb_max=SHARE * params.climb_max,
         sink_max=SHARE * params.sink_max,

@@ -45,7 +45,7 @@ GAINS = Gains()
 
 def preset(trim_airspeed: float) -> dict[str, float | str]:
     """Autopilot parameters for the thesis' gains at ``trim_airspeed`` [m/s]; its course loop commands bank, ours turn rate."""
-    follower = {"chi_inf": GAINS.chi_inf, "k_path": GAINS.k_path, "k_orbit": GAINS.k_orbit, "cross_track_i": 0.0, "lead_time": 0.0}
+    follower = {"chi_inf": GAINS.chi_inf, "k_path": GAINS.k_path, "k_orbit": GAINS.k_orbit, "course_i": 0.0, "lead_time": 0.0}
     return {"law": "thesis", "course_p": GAINS.course_kp * GRAVITY / trim_airspeed, **follower}
 
 
@@ -94,6 +94,8 @@ class ThesisAttitude:
 
 class ThesisPath:
     """The thesis' outer loops: altitude and airspeed by the phase of flight (climb, descend, hold)."""
+
+    lacking = 0.0
 
     def __init__(self) -> None:
         self._altitude = PiController(GAINS.alt_kp, GAINS.alt_ki)

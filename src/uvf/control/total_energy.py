@@ -59,6 +59,7 @@ class EnergyLoops:
         self._trim = Integral(CLIMB_TRIM_LIMIT)
         self._power = PowerObserver()
         self._throttle: float | None = None
+        self.lacking = 0.0
 
     def begin(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, pitch: float, throttle: float) -> None:
         """Sets integrator and observer so that the first step asks for ``pitch`` [rad] and ``throttle`` [0..1], as far as limits allow."""
@@ -74,7 +75,8 @@ class EnergyLoops:
         if self._throttle is not None:
             self._power.step(cycle, self._throttle)
         asked = self._asked(cycle, wanted)
-        pitch, error = self._pitch(cycle, asked.reached), (asked.reached - cycle.now.climb) / cycle.speed
+        self.lacking = asked.reached - cycle.now.climb
+        pitch, error = self._pitch(cycle, asked.reached), self.lacking / cycle.speed
         if (error > 0 and pitch < cycle.highest_pitch) or (error < 0 and pitch > -cycle.params.pitch_limit):
             self._trim.step(cycle.params.climb_i * error, cycle.dt)
         level = level_throttle(cycle, self._airspeed(cycle, wanted))

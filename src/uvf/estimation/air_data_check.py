@@ -17,6 +17,8 @@ SMOOTHED = 0.5  # s, of the comparison: a gust is no fault
 AGREES = 5.0  # s of agreement before the sensor is watched, and before it is believed again
 WIND_TIME = 30.0  # s, behind which the wind that counts follows the one that is estimated
 SHEAR = 0.35  # of the wind, that an aircraft may lose or meet on its way down or up: no fault of a sensor
+GUSTS, GUST_TIME = 5.0, 60.0  # standard deviations of the comparison, as it has been of late, that are no fault; s
+MOST_GUST = 0.5  # of airspeed_gap, that a deviation counts for at most: a fault does not hide itself
 LIFT_TIME = 2.0  # s, of the comparison with the lift: updraughts turn the angle of attack
 LIFT_SHARE = 0.15  # of trim_airspeed, from which on the lift contradicts too
 LEAST_ALPHA, MOST_BANK = 0.03, 0.9  # rad, over that of no lift; rad: within these the lift tells the airspeed
@@ -57,6 +59,7 @@ class AirDataCheck:
         self._frozen = (False, False)
         self._smoothed = LowPass(SMOOTHED)
         self._by_lift = LowPass(LIFT_TIME)
+        self._power = LowPass(GUST_TIME)
         self._wind: tuple[float, float] | None = None
         self._agreed = 0.0  # s
         self._watched = False
@@ -92,7 +95,7 @@ class AirDataCheck:
             gap = self._smoothed.step(measured - expected, dt)
             if (lifted := lift_airspeed(now, params)) is not None:
                 self._by_lift.step(measured - lifted, dt)
-            self._judge(gap, params.airspeed_gap * params.trim_airspeed + SHEAR * math.hypot(*self._wind or (0.0, 0.0)), params, dt)
+            self._judge(gap, self._limit(gap, params, dt), params, dt)
         return replace(pressures, differential=0.5 * density * expected**2) if self.gap else pressures
 
     def _expected(self, now: Estimate, dt: float) -> float:
@@ -106,6 +109,13 @@ class AirDataCheck:
         wn, we = self._wind  # type: ignore[misc]
         north, east = now.ground_speed * math.cos(now.course) - wn, now.ground_speed * math.sin(now.course) - we
         return math.hypot(north, east, now.climb)
+
+    def _limit(self, gap: float, params: AirParams, dt: float) -> float:
+        """m/s, up to which it may be gusts and a wind that differs from place to place."""
+        least = params.airspeed_gap * params.trim_airspeed
+        if self._watched and not self.gap:
+            self._power.step(min(abs(gap), MOST_GUST * least) ** 2, dt)
+        return max(least, GUSTS * math.sqrt(self._power.value or 0.0)) + SHEAR * math.hypot(*self._wind or (0.0, 0.0))
 
     def _judge(self, gap: float, limit: float, params: AirParams, dt: float) -> None:
         """Believed until off by more than ``limit`` [m/s], and by the lift too, or stands still; again after 5 s within half of it."""

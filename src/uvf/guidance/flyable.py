@@ -55,7 +55,7 @@ def _speeds(items: Sequence[PlanItem], params: AirParams) -> list[float]:
 
 
 def advice(items: Sequence[PlanItem], params: AirParams) -> Iterator[tuple[str, str]]:
-    """(what, why) for each waypoint that is not rounded by a corner of its own, in calm air."""
+    """(what, why) for each waypoint that is not rounded by a corner of its own, and each slope that is too steep, in calm air."""
     speeds, stops = _speeds(items, params), [NextItem(i, NO_JUMPS, 0, None) for i in range(len(items))]
     for stop in stops:
         assert stop.index is not None
@@ -64,14 +64,31 @@ def advice(items: Sequence[PlanItem], params: AirParams) -> Iterator[tuple[str, 
         if onward.index is None or not items[onward.index].flies_through or item.course is not None:
             continue
         leg = Leg(item.place, items[onward.index].place)
+        if why := _steep(leg, speeds[onward.index], params):
+            yield f"item {onward.index}: its height is not reached on the way there", why
         planner = RoutePlanner(items, params, (0.0, 0.0), speeds[onward.index])
         exit_ = None if items[onward.index].course is not None else planner.with_exit(leg, onward).exit
         then = following(items, onward)
         if isinstance(exit_, Curve) and then.index is not None and items[then.index].course is None:
             yield (
-                f"item {onward.index}: a curve is flown past it",
+                curve_text(onward.index),
                 _why(leg, items[then.index], planner, items[onward.index]),
             )
+
+
+def _steep(leg: Leg, speed: float, params: AirParams) -> str:
+    """How a slope is steeper than the aircraft climbs or sinks; empty if it is not."""
+    rate = (leg.end.height - leg.start.height) / max(leg.length, 1.0) * speed
+    if -params.sink_max <= rate <= params.climb_max:
+        return ""
+    name, most = ("climb_max", params.climb_max) if rate > 0 else ("sink_max", params.sink_max)
+    needed = abs(leg.end.height - leg.start.height) * speed / most
+    return f"the slope is {abs(rate):.1f} m/s at {speed:g} m/s, {name} is {most:g} m/s: make the leg {math.ceil(needed)} m long, or slower"
+
+
+def curve_text(index: int) -> str:
+    """In words, that the waypoint ``index`` is not rounded by a corner of its own."""
+    return f"item {index}: a curve is flown past it"
 
 
 def _why(leg: Leg, then: PlanItem, planner: RoutePlanner, item: PlanItem) -> str:

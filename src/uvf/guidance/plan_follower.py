@@ -77,6 +77,16 @@ class PlanFollower:
         return laid_down(self.items, self.index, params) if self.index is not None else None
 
     @property
+    def corner(self) -> tuple[int, bool] | None:
+        """The waypoint at the end of this leg, if it is one to be rounded, and whether there is room for a corner round it."""
+        piece = self._piece
+        if not isinstance(piece, Leg) or piece.exit is None or self.index is None:
+            return None
+        then = following(self.items, self._stop).index
+        is_drawn = then is not None and self.items[then].flies_through and self.items[then].course is None
+        return (self.index, isinstance(piece.exit, Corner)) if is_drawn else None
+
+    @property
     def returns_home(self) -> bool:
         """Whether the current item is a return."""
         return self.index is not None and self.items[self.index].kind is ItemKind.RETURN

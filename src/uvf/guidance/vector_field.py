@@ -14,7 +14,7 @@ from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
 Point = tuple[float, float]
-INTEGRATES_WITHIN = 5.0  # m
+INTEGRATES_WITHIN = 5.0, 0.2  # m, rad
 TURN_TRIM_LIMIT = 0.05  # rad/s
 SHALLOWEST, STEEPEST = 0.4, 2.0  # of the field about a path, by the ground speed
 
@@ -78,9 +78,28 @@ class LateralGuidance:
         drift = speed * math.sin(off_path)
         field_rate = -slope / (1 + (convergence * aim.error) ** 2) * drift
         course_error = math.remainder(correction - off_path, math.tau)
-        rate = speed * aim.curvature + clip(field_rate, 0.5) + params.course_p * course_error
-        if abs(aim.error) < INTEGRATES_WITHIN:
-            self._trim.step(-params.cross_track_i * aim.error, dt)
+        rate = clip(field_rate, 0.5) + params.course_p * course_error
+        if abs(aim.error) < INTEGRATES_WITHIN[0] and abs(course_error) < INTEGRATES_WITHIN[1]:
+            # What is off the field, not off the path: the field leads back onto it.
+            self._trim.step(params.course_i * course_error, dt)
         rate += self._trim.value
         crab = math.cos(math.remainder(now.course - now.yaw, math.tau))
-        return clip(math.atan(rate * speed / (GRAVITY * max(crab, 0.3))), params.bank_limit)
+        ahead, crab_ahead = _ahead(aim, now, speed, params)
+        sideways = aim.curvature * ahead**2 / max(crab_ahead, 0.3) + rate * speed / max(crab, 0.3)
+        return clip(math.atan(sideways / GRAVITY), params.bank_limit)
+
+
+def _ahead(aim: PathReference, now: Estimate, speed: float, params: AirParams) -> tuple[float, float]:
+    """Ground speed [m/s] and cosine of the crab angle on the path by the time at which a bank that is commanded now is there."""
+    turned = speed * aim.curvature * (params.lead_time + params.bank_time)
+    (before, _), (after, crab) = (_in_wind(aim.course + angle, now) for angle in (0.0, turned))
+    return max(speed + after - before, 5.0), crab
+
+
+def _in_wind(course: float, now: Estimate) -> tuple[float, float]:
+    """Ground speed [m/s] on a course at the present airspeed and wind, and the cosine of the crab angle (Beard & McLain 2.4)."""
+    along = now.wind_north * math.cos(course) + now.wind_east * math.sin(course)
+    across = now.wind_east * math.cos(course) - now.wind_north * math.sin(course)
+    air = max(now.airspeed, 1.0)
+    crab = math.sqrt(max(1 - (across / air) ** 2, 0.0))
+    return along + air * crab, crab

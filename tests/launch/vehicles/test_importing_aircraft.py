@@ -88,3 +88,16 @@ def test_a_model_that_jsbsim_does_not_load_is_refused_with_its_reason_and_the_na
     with pytest.raises(BadInput) as refused:
         import_vehicle(model, tmp_path / "vehicles" / "x")
     assert str(refused.value).startswith(f"{model}: JSBSim refuses it: Error loading aerodynamic function in {names[0]}")
+
+
+def test_what_the_model_tells_is_not_guessed(tmp_path):
+    notes = import_vehicle(SHIPPED / "J3Cub", tmp_path / "cub")
+    file = load_vehicle(tmp_path, "cub")
+    assert file.air.controls.flap.limit == 0.0 and "found: it has no flaps" in notes
+    assert 0.3 < file.params["autopilot_air"]["gear_height"] < 3.0
+    assert any(re.match(r"found: it stands \d\.\d\d m high, its nose \d+ degrees up", note) for note in notes)
+
+
+def test_a_travel_that_is_not_the_same_both_ways_is_told(tmp_path):
+    notes = import_vehicle(SHIPPED / "c172p", tmp_path / "c172p")
+    assert "found: the elevator goes 0.401 rad one way and 0.489 the other; taken as 0.445 to both sides" in notes

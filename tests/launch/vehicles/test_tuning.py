@@ -39,10 +39,10 @@ def figures():
             found[key] = autopilot_figures(airframe, body)
         return dict(found[key])
 
-    def designed_once(aircraft, params):
-        key = params.trim_airspeed
+    def designed_once(aircraft, params, firmness):
+        key = params.trim_airspeed, firmness
         if key not in gains:
-            gains[key] = designed(aircraft, params)
+            gains[key] = designed(aircraft, params, firmness)
         return gains[key]
 
     with mock.patch("launch.vehicles.tuning.autopilot_figures", once), mock.patch("launch.vehicles.tuning.designed", designed_once):
@@ -55,7 +55,7 @@ def tuning(request, figures):
 
 
 def test_every_loop_has_its_margins_at_every_airspeed(tuning):
-    assert {loop.name for loop in tuning.loops} == {"path", "roll", "yaw", "height", "pitch", "airspeed"}
+    assert {loop.name for loop in tuning.loops} == {"path", "roll", "yaw", "height", "pitch", "airspeed", "flare", "flare pitch"}
     assert len({loop.airspeed for loop in tuning.loops}) == 3
     for loop in tuning.loops:
         assert loop.stable

@@ -34,7 +34,7 @@ class ActivePlans:
         refusal = mission_fault(items, self._mode_manager.fence.fencing, params) or self._mode_manager.load(items, params)
         if not refusal:
             self.mission = intake.with_id(mission.items)
-            self._journal.note(advice(self._mode_manager.navigator.items, params))
+            self._journal.new_mission(advice(self._mode_manager.navigator.items, params))
             self._news.add("plan")
         return refusal
 

@@ -32,7 +32,6 @@ TOO_HIGH, TOO_FAST = 3.0, 7.0  # m, m/s
 FLARE_TIME = 3.0  # s
 LEAD = 0.5  # s, by which the sink asked for is ahead of the path: the climb follows that much later
 TOUCH_SINK = 0.4  # m/s
-FLARE_P = 1.5  # 1/s, climb rate per error of height
 TOUCH_SPEED, SLOWS_BELOW = 0.96, 3.0  # of min_airspeed; m
 DECRAB_BELOW = 0.7  # m
 CRAB_LEFT = 0.1  # rad, that the wheels take
@@ -158,7 +157,7 @@ class LandingMode(FlightPhase):
         fast = self._airspeed(now, params)
         if why := self._unstable(now, wheels.height, wheels.height - wanted, right, fast):
             self.around(why)
-        climb = -slope * now.ground_speed + (FLARE_P if flares else params.altitude_p) * (wanted - wheels.height)
+        climb = -slope * now.ground_speed + (params.flare_p if flares else params.altitude_p) * (wanted - wheels.height)
         if flares:
             climb = max(climb, -MOST_SINK - SINK_PER_M * max(wheels.height, 0.0))
         climb += now.climb - wheels.climb  # as the estimate has it

@@ -5,6 +5,8 @@ from collections.abc import Iterable
 from schemas.messages import Event
 from services.autopilot.air.active_mode import ActiveMode
 from services.autopilot.air.mode_table import FlightMode
+from uvf.guidance.flyable import curve_text
+from uvf.guidance.plan_follower import PlanFollower
 from uvf.runtime.messages.convert import stamp
 
 
@@ -18,6 +20,7 @@ class EventLog:
         self._reached = -1
         self._pictures = (0, 0)
         self._notes: list[tuple[str, str]] = []
+        self._curves: set[str] = set()
         self._laps = 0
         self._finished = False
         self._lost = False
@@ -41,6 +44,7 @@ class EventLog:
             if camera.pictures > before and camera.last is not None:
                 north, east = camera.last
                 found.append(_event(t, Event.INFO, f"camera trigger {sum(pictures)}", f"at x {east:.1f} m, y {north:.1f} m"))
+        self._watch_curves(navigator)
         found += [_event(t, Event.INFO, text, cause) for text, cause in self._notes]
         self._pictures, self._notes = pictures, []
         if navigator.finished and not self._finished:
@@ -48,6 +52,24 @@ class EventLog:
         self._mode, self._reason, self._armed, self._lost = active.mode, active.reason, armed, False
         self._reached, self._laps, self._finished = navigator.reached, navigator.laps, navigator.finished
         return found
+
+    def new_mission(self, advice: Iterable[tuple[str, str]]) -> None:
+        """What is flown otherwise than it is drawn, what and why, is told; later only what changes."""
+        told = list(advice)
+        self._curves = {text for text, _ in told}
+        self.note(told)
+
+    def _watch_curves(self, navigator: PlanFollower) -> None:
+        """A corner that has no room any more, with the wind and the bank of now, and one that has again."""
+        if navigator.corner is None:
+            return
+        index, is_rounded = navigator.corner
+        text = curve_text(index)
+        if is_rounded:
+            self._curves.discard(text)
+        elif text not in self._curves:
+            self._curves.add(text)
+            self.note([(text, "its corner has no room on its legs with the wind and the bank of now")])
 
     def note(self, notes: Iterable[tuple[str, str]]) -> None:
         """To be told with the next events: what and why."""

@@ -9,6 +9,7 @@ from uvf.control.design import lateral_loops, longitudinal_loops
 from uvf.control.design.flight_condition import ActuatorDelays, FlightCondition, scaled
 from uvf.control.design.margins import Margins, margins
 from uvf.control.design.signal_flow import Floats, SignalFlow
+from uvf.control.flight_control import on_final
 from uvf.models.vehicle.flight_params import AirParams
 
 OMEGA: Floats = np.geomspace(0.004, 1000.0, 700)  # rad/s
@@ -65,6 +66,9 @@ def loops(flight: FlightCondition, delays: ActuatorDelays, params: AirParams, po
     longitudinal = longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, params, given_throttle=not powered)
     for flow, opened in ((lateral, lateral_loops.LOOPS), (longitudinal, longitudinal_loops.LOOPS)):
         yield from _of(flow, opened, flight.airspeed, powered)
+    if flight.airspeed <= params.trim_airspeed + 0.1:
+        final = longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, on_final(params), given_throttle=not powered)
+        yield from _of(final, longitudinal_loops.ON_FINAL, flight.airspeed, powered)
 
 
 def _of(flow: SignalFlow, opened: dict[str, str], airspeed: float, powered: bool) -> Iterator[Loop]:

@@ -19,6 +19,7 @@ from uvf.control.design.aircraft_loops import AircraftLoops
 from uvf.control.design.flight_condition import ActuatorDelays, FlightCondition
 from uvf.control.design.margins import margins
 from uvf.control.design.signal_flow import Floats, SignalFlow
+from uvf.control.flight_control import on_final
 from uvf.maths.dryden import W20, spectra, strength
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -35,7 +36,7 @@ LATERAL = {
     "slip_i": (1e-4, 1.0),
     "course_p": (0.1, 5.0),
     "k_path": (1e-3, 1.0),
-    "cross_track_i": (1e-6, 0.1),
+    "course_i": (1e-3, 0.2),
 }
 LONGITUDINAL = {
     "pitch_time": (0.1, 2.0),
@@ -47,17 +48,21 @@ LONGITUDINAL = {
     "airspeed_p": (0.2, 2.0),
     "power_pole": (0.4, 5.0),
 }
+FINAL = {"final_climb_p": (0.05, 6.0), "final_pitch_time": (0.1, 2.0), "flare_p": (0.2, 2.5)}
 """Gains that are searched for, within these limits in their own units."""
 TRIALS = (600, 500, 400)  # evaluations of each simplex; the last with what is hardest
 SOFTER = (1.0, 1.5, 2.2, 3.3, 5.0, 7.5)  # times the time constants to begin with, until the loops are stable
-STIFF = {"roll_p": 0.15, "roll_i": 0.3, "pitch_p": 0.5, "pitch_i": 2.0}
+STIFF = {"roll_p": 0.15, "roll_i": 0.3, "pitch_p": 0.3, "pitch_i": 1.0}
 """Least gains of the rate loops, as shares of the feed-forward (those of ``_i``: 1/s): an attitude is to be held by itself, too."""
+STEEP = 0.3  # 1/s, with which a path is approached at least
 SLOWEST, SLOWER = 0.5, 4.0  # s, and of the delays: the longest time constant of an attitude
 FLOOR = (2.5, 15.0, 4.0)  # dB, deg, sensitivity: what is left when the aircraft is not what its model says
 HARDEST = 4  # of such aircraft, that are designed for
-ASIDE, ABOVE, FASTER = 0.25, 0.5, 0.7  # m, m, m/s: errors in turbulence of an aircraft that answers within QUICK
-QUICK, GROWS = 0.15, 2.5  # s; the power of the answer's time with which these errors grow
-ROLL_WAY, PITCH_WAY, THROTTLE_WAY = 7.0, 3.0, 0.3  # deg/s of ailerons and rudder, of the elevator; 1/s: budgets of their way there
+ASIDE, ABOVE, FASTER = 0.5, 0.5, 0.7  # m, m, m/s: errors in turbulence, each worth as much as the surfaces' whole budget
+FINAL_SHARE, FINAL_WAY = 0.3, 3.0  # of ABOVE, of PITCH_WAY: budgets near the ground
+FLARES = 1.5  # times altitude_p, to begin with
+ROLL_WAY, PITCH_WAY, THROTTLE_WAY = 5.0, 3.0, 0.3  # deg/s of ailerons and rudder, of the elevator; 1/s: budgets of their way there
+LARGEST = 4  # power of a share: what lies well within its budget is not worth much
 UNSTABLE = 1e3  # cost of a pole on the right
 FIRST = 0.4  # of the simplex, in logarithms
 WAY = np.degrees(np.sqrt(2 / np.pi))  # mean size of a normal number, in deg
@@ -115,21 +120,36 @@ class Axis:
     opened: Mapping[str, str]
     build: Callable[[FlightCondition, ActuatorDelays, AirParams], SignalFlow]
     wanted: Callable[[SignalFlow], float]
+    fastest: float = np.inf  # m/s, up to which it is flown so
 
 
-def designed(aircraft: AircraftLoops, params: AirParams) -> AirParams:
+def designed(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> AirParams:
     """The parameters with all gains designed, from those of ``begun``.
 
-    First for the aircraft as its model has it, then again with the flights of ``AircraftLoops.spread`` that are nearest to instability.
+    firmness: above 1 errors count more, the motion of the surfaces less. First for the aircraft as its model has it,
+    then again with the flights of ``AircraftLoops.spread`` that are nearest to instability.
     """
-    for axis in _axes(aircraft, params):
-        walls = [RequiredMargins(flight, aircraft.delays) for flight in aircraft.conditions]
-        cruise = min(range(len(walls)), key=lambda i: abs(walls[i].flight.airspeed - params.trim_airspeed))
-        for trials in TRIALS[:-1]:
-            params = _searched(params, axis, walls, cruise, trials)
-        worst = sorted((RequiredMargins(*spread, *FLOOR) for spread in aircraft.spread()), key=lambda wall: -_lacking(wall, axis, params))
-        params = _searched(params, axis, [*walls, *worst[:HARDEST]], cruise, TRIALS[-1])
-    return params
+    for axis in _axes(aircraft, params, firmness):
+        params = _designed(aircraft, params, axis)
+    return _designed(aircraft, as_in_cruise(params), _final(aircraft, params, firmness))
+
+
+def _designed(aircraft: AircraftLoops, params: AirParams, axis: Axis) -> AirParams:
+    walls = [RequiredMargins(flight, aircraft.delays) for flight in aircraft.conditions if flight.airspeed < axis.fastest]
+    cruise = min(range(len(walls)), key=lambda i: abs(walls[i].flight.airspeed - params.trim_airspeed))
+    for trials in TRIALS[:-1]:
+        params = _searched(params, axis, walls, cruise, trials)
+    worst = sorted(
+        (RequiredMargins(*spread, *FLOOR) for spread in aircraft.spread() if spread[0].airspeed < axis.fastest),
+        key=lambda wall: -_lacking(wall, axis, params),
+    )
+    return _searched(params, axis, [*walls, *worst[:HARDEST]], cruise, TRIALS[-1])
+
+
+def as_in_cruise(params: AirParams) -> AirParams:
+    """With the gains of the final approach from those of cruise."""
+    flare = min(max(FLARES * params.altitude_p, FINAL["flare_p"][0]), FINAL["flare_p"][1])
+    return msgspec.structs.replace(params, final_climb_p=params.climb_p, final_pitch_time=params.pitch_time, flare_p=flare)
 
 
 def begun(aircraft: AircraftLoops, params: AirParams) -> AirParams:
@@ -141,11 +161,11 @@ def begun(aircraft: AircraftLoops, params: AirParams) -> AirParams:
             params = msgspec.structs.replace(params, **limited)
             if not any(axis.build(flight, aircraft.delays, params).unstable for flight in aircraft.conditions):
                 break
-    return params
+    return as_in_cruise(params)
 
 
-def _axes(aircraft: AircraftLoops, params: AirParams) -> tuple[Axis, Axis]:
-    return _lateral(aircraft, params), _longitudinal(aircraft, params)
+def _axes(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> tuple[Axis, Axis]:
+    return _lateral(aircraft, params, firmness), _longitudinal(aircraft, params, firmness)
 
 
 def _lacking(wall: RequiredMargins, axis: Axis, params: AirParams) -> float:
@@ -161,40 +181,51 @@ def _cruise(aircraft: AircraftLoops, params: AirParams) -> FlightCondition:
     return min(aircraft.conditions, key=lambda flight: abs(flight.airspeed - params.trim_airspeed))
 
 
-def _slow(aircraft: AircraftLoops, params: AirParams) -> float:
-    """How much further off it may be for the time in which it answers its ailerons: until they move, and the damping of roll."""
-    damping = max(-_cruise(aircraft, params).lateral.slope("p", "p"), 0.1)
-    return float(max((aircraft.delays.total("aileron") + 1 / damping) / QUICK, 1.0) ** GROWS)
-
-
-def _lateral(aircraft: AircraftLoops, params: AirParams) -> Axis:
-    air, slow = _air(aircraft, params), _slow(aircraft, params)
+def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
+    air = _air(aircraft, params)
 
     def wanted(flow: SignalFlow) -> float:
         error = np.hypot(air.rms(flow, "aside", "vpr"), disturbed(flow, "aside", "bank", *BANK_OFF))
         way = WAY * sum(air.rms(flow, surface, "vpr", rate=True) for surface in ("servo_a", "servo_r"))
-        return _within(error / (slow * ASIDE), way / ROLL_WAY)
+        return _within(firmness * error / ASIDE, way / ROLL_WAY)
 
     gains = LATERAL | _inner("roll", aircraft.delays.total("aileron"), params.roll_ff, LATERAL)
+    gains["k_path"] = STEEP / (params.trim_airspeed * params.chi_inf * 2 / np.pi), LATERAL["k_path"][1]
     if params.rudder_mix:
         gains["rudder_mix"] = (1e-3, abs(params.rudder_mix))
     return Axis(gains, lateral_loops.LOOPS, partial(lateral_loops.lateral_flow, OMEGA), wanted)
 
 
-def _longitudinal(aircraft: AircraftLoops, params: AirParams) -> Axis:
-    air, slow = _air(aircraft, params), _slow(aircraft, params)
+def _longitudinal(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
+    air = _air(aircraft, params)
 
     def wanted(flow: SignalFlow) -> float:
         error = np.hypot(air.rms(flow, "h", "uwq"), disturbed(flow, "h", "pitch", *PITCH_OFF))
         way = WAY * air.rms(flow, "servo_e", "uwq", rate=True)
         throttle = np.sqrt(2 / np.pi) * air.rms(flow, "servo_t", "uwq", rate=True) if aircraft.powered else 0.0
-        return _within(error / (slow * ABOVE), air.rms(flow, "airspeed", "uwq") / FASTER, way / PITCH_WAY, throttle / THROTTLE_WAY)
+        return _within(firmness * error / ABOVE, air.rms(flow, "airspeed", "uwq") / FASTER, way / PITCH_WAY, throttle / THROTTLE_WAY)
 
     gains = LONGITUDINAL | _inner("pitch", aircraft.delays.total("elevator"), params.pitch_ff, LONGITUDINAL)
     loops = dict(longitudinal_loops.LOOPS)
     if not aircraft.powered:
         del loops["airspeed"], gains["airspeed_p"], gains["power_pole"]
     return Axis(gains, loops, partial(longitudinal_loops.longitudinal_flow, OMEGA, given_throttle=not aircraft.powered), wanted)
+
+
+def _final(aircraft: AircraftLoops, params: AirParams, firmness: float) -> Axis:
+    """Climb and pitch near the ground, where comfort does not count: as stiff as the inner loop's gains of cruise allow."""
+    air = _air(aircraft, params)
+    first = _longitudinal(aircraft, params)
+
+    def wanted(flow: SignalFlow) -> float:
+        error = np.hypot(air.rms(flow, "h", "uwq"), disturbed(flow, "h", "pitch", *PITCH_OFF))
+        return _within(firmness * error / (FINAL_SHARE * ABOVE), WAY * air.rms(flow, "servo_e", "uwq", rate=True) / (FINAL_WAY * PITCH_WAY))
+
+    def build(flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
+        return first.build(flight, delays, on_final(params))
+
+    gains = FINAL | {"final_pitch_time": first.gains["pitch_time"]}
+    return Axis(gains, first.opened, build, wanted, params.trim_airspeed + 0.1)
 
 
 def _inner(axis: str, delay: float, ahead: float, gains: Mapping[str, Limits]) -> dict[str, Limits]:
@@ -208,8 +239,8 @@ def _inner(axis: str, delay: float, ahead: float, gains: Mapping[str, Limits]) -
 
 
 def _within(*shares: float) -> float:
-    """What is made small: each error and each way as a share of its budget, the largest count most."""
-    return float(np.log(np.sum(np.square(shares))))
+    """What is made small: each error and each way as a share of its budget, the largest almost alone."""
+    return float(np.log(np.sum(np.power(shares, LARGEST))) / 2)
 
 
 def _first(aircraft: AircraftLoops, params: AirParams, softer: float) -> dict[str, float]:
@@ -224,7 +255,7 @@ def _first(aircraft: AircraftLoops, params: AirParams, softer: float) -> dict[st
         "slip_i": 0.003 / softer,
         "course_p": path,
         "k_path": path / (params.trim_airspeed * params.chi_inf * 2 / np.pi),
-        "cross_track_i": 0.05 * path**2 / params.trim_airspeed,
+        "course_i": 0.05 * path**2,
         "pitch_time": pitch,
         "pitch_p": 0.7 * params.pitch_ff / softer,
         "pitch_i": 1.5 * params.pitch_ff / softer,

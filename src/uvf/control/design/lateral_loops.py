@@ -15,7 +15,11 @@ SIGNALS = (
     *("path_trim", "bank", "roll_trim", "aileron_asked", "slip_trim", "rudder_asked"),
     *("servo_a", "servo_r", "delta_a", "delta_r"),
 )
-INPUTS = ("gust_v", "gust_p", "gust_r", "noise_p", "noise_r")
+INPUTS = (
+    "gust_v",
+    "gust_p",
+    "gust_r",
+)
 IN_AIR = {"v": ("v",), "p": ("v", "p", "r"), "r": ("v", "p", "r")}
 LOOPS = {"path": "bank", "roll": "aileron_asked", "yaw": "rudder_asked"}
 """Where each is opened."""
@@ -30,8 +34,8 @@ def lateral_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays,
         servo, model = getattr(delays, asked)
         flow.lag(f"servo_{surface}", servo, {f"{asked}_asked": np.exp(-delays.dead_time * flow.s)})
         flow.lag(f"delta_{surface}", model, {f"servo_{surface}": 1.0})
-    flow.lag("p_felt", GYRO_TIME, {"p": 1.0, "noise_p": 1.0})
-    flow.lag("r_felt", GYRO_TIME, {"r": 1.0, "noise_r": 1.0})
+    flow.lag("p_felt", GYRO_TIME, {"p": 1.0})
+    flow.lag("r_felt", GYRO_TIME, {"r": 1.0})
     _guidance(flow, flight, params)
     _roll(flow, flight, params)
     _yaw(flow, flight, params)
@@ -51,7 +55,7 @@ def _airframe(flow: SignalFlow, flight: FlightCondition) -> None:
 def _guidance(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
     speed = flight.ground_speed
     slope = params.chi_inf * 2 / math.pi * params.k_path * params.trim_airspeed / speed
-    flow.integral("path_trim", {"aside": -params.cross_track_i})
+    flow.integral("path_trim", {"off": -params.course_i, "aside": -params.course_i * slope})
     rate = {"off": -slope * speed - params.course_p, "aside": -params.course_p * slope, "path_trim": 1.0}
     flow.equal("bank", {name: value * speed / GRAVITY for name, value in rate.items()})
 
@@ -69,8 +73,7 @@ def _yaw(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
     scale = _scale(flight, params)
     flow.integral("slip_trim", {"side_force": params.slip_i})
     turning = GRAVITY / flight.airspeed  # rad/s per rad of bank
-    by_bank = math.sqrt(scale) * params.rudder_ff * turning - scale * params.yaw_damping * turning
-    damped = {"r_felt": scale * params.yaw_damping, "phi": by_bank, "slip_trim": scale}
+    damped = {"r_felt": scale * params.yaw_damping, "phi": -scale * params.yaw_damping * turning, "slip_trim": scale}
     flow.equal("rudder_asked", damped | {"aileron_asked": params.rudder_mix})
 
 

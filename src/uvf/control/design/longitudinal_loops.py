@@ -11,13 +11,14 @@ from uvf.models.vehicle.flight_params import AirParams
 
 SIGNALS = (
     *("u", "w", "q", "theta", "h", "climb", "airspeed", "q_felt", "airspeed_felt"),
-    *("climb_asked", "climb_trim", "pitch", "pitch_trim", "elevator_asked"),
+    *("climb_asked", "climb_trim", "pitch", "pitch_trim", "alpha_asked", "elevator_asked"),
     *("kinetic", "unexplained", "throttle_asked"),
     *("servo_e", "servo_t", "delta_e", "delta_t"),
 )
-INPUTS = ("gust_u", "gust_w", "gust_q", "noise_q", "noise_airspeed")
+INPUTS = ("gust_u", "gust_w", "gust_q")
 IN_AIR = {"u": ("u", "w"), "w": ("u", "w"), "q": ("u", "w", "q")}
 LOOPS = {"height": "pitch", "pitch": "elevator_asked", "airspeed": "throttle_asked"}
+ON_FINAL = {"flare": "pitch", "flare pitch": "elevator_asked"}
 """Where each is opened."""
 
 
@@ -33,8 +34,8 @@ def longitudinal_flow(
     flow.lag("delta_e", delays.elevator[1], {"servo_e": 1.0})
     flow.lag("servo_t", delays.throttle[0], {} if given_throttle else {"throttle_asked": late})
     flow.lag("delta_t", delays.throttle[1], {"servo_t": 1.0})
-    flow.lag("q_felt", GYRO_TIME, {"q": 1.0, "noise_q": 1.0})
-    flow.lag("airspeed_felt", AIRSPEED_TIME, {"airspeed": 1.0, "noise_airspeed": 1.0})
+    flow.lag("q_felt", GYRO_TIME, {"q": 1.0})
+    flow.lag("airspeed_felt", AIRSPEED_TIME, {"airspeed": 1.0})
     _height(flow, flight, params)
     _pitch(flow, flight, params)
     _energy(flow, flight, params)
@@ -68,8 +69,10 @@ def _pitch(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None
     flow.integral("pitch_trim", {name: -params.pitch_i * value for name, value in error.items()})
     ahead = {name: math.sqrt(scale) * params.pitch_ff * value for name, value in asked.items()}
     moving = {name: -ahead.get(name, 0.0) - scale * params.pitch_p * value for name, value in error.items()}
-    balance = -2 * params.elev_per_alpha * params.alpha_per_load * GRAVITY / flight.eas**2 / flight.airspeed
-    flow.equal("elevator_asked", moving | {"pitch_trim": scale, "airspeed_felt": balance})
+    turned = params.alpha_per_load * flight.airspeed / flight.eas**2  # s, and rad of alpha per rad/s
+    carried = -2 * params.alpha_per_load * GRAVITY / flight.eas**2 / flight.airspeed
+    flow.lag("alpha_asked", turned, {name: turned * value for name, value in asked.items()} | {"airspeed_felt": carried})
+    flow.equal("elevator_asked", moving | {"pitch_trim": scale, "alpha_asked": params.elev_per_alpha})
 
 
 def _energy(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:

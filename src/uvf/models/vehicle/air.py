@@ -12,6 +12,7 @@ from uvf.models.vehicle.looks import Looks
 from uvf.models.yaml_data import BadInput, FileLocation
 
 Deflection = Annotated[float, Meta(ge=0.01, le=1.6)]
+Travel = Annotated[float, Meta(ge=0, le=1.6)]
 PropertyName = Annotated[str, Meta(pattern=r"^/?[A-Za-z_][A-Za-z0-9_./\[\]-]*\Z", max_length=200)]
 """Of a JSBSim property: fcs/aileron-cmd-norm, fcs/throttle-cmd-norm[1]."""
 Properties = str | list[str]  # not of PropertyName: constraints in such a union end some processes with a crash (msgspec issue 717)
@@ -31,10 +32,14 @@ class Surface(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Deflection to property: sign * deflection / limit. No ``property`` = JSBSim's standard one; rate and lag, where not the servos'."""
 
     property: Annotated[Properties, plain("JSBSim property or properties that are written; left out: the standard one.")] = []
-    limit: Annotated[Deflection, key("rad", "Deflection at full command.")] = 0.35
+    limit: Annotated[Travel, key("rad", "Deflection at full command; 0: there is no such surface.")] = 0.35
     sign: Annotated[Literal[1, -1], plain("1 or -1: the property's sense against that of the [convention](frames.md).")] = 1
     rate: Annotated[Positive | None, key("rad/s", "Largest rate; left out: `servo_rate`.")] = None
     lag: Annotated[NotNegative | None, key("s", "Time constant; left out: `servo_lag`.")] = None
+
+    def norm(self, deflection: float) -> float:
+        """Command of a deflection [rad], 1 at full; 0 where there is no such surface."""
+        return deflection / self.limit if self.limit else 0.0
 
 
 class Lever(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -111,7 +116,7 @@ class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     model: Annotated[Name, plain("Name of the JSBSim model: the folder and the XML file in it.")]
     physics_hz: Annotated[PhysicsRate, key("Hz", "Physics steps per second of simulation time.")]
     trim_speed: Annotated[Positive, key("m/s", "Airspeed at which the aircraft starts in level flight.")]
-    servo_rate: Annotated[Positive, key("rad/s", "Largest rate of a surface.")]
+    servo_rate: Annotated[Positive | None, key("rad/s", "Largest rate of a surface; `null`: none.")]
     servo_lag: Annotated[NotNegative, key("s", "Time constant of a servo.")]
     controls: Annotated[CommandProperties, plain("What the commands are written to.")] = CommandProperties()
     joints: Annotated[
