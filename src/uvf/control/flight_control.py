@@ -78,7 +78,8 @@ class FlightControl:
 
 def on_final(params: AirParams) -> AirParams:
     """The parameters as they are flown on the last metres before touching down; ``altitude_p`` there is that of the flare."""
-    return msgspec.structs.replace(params, climb_p=params.final_climb_p, pitch_time=params.final_pitch_time, altitude_p=params.flare_p)
+    inner = {"pitch_time": params.final_pitch_time, "pitch_p": params.final_pitch_p, "pitch_i": params.final_pitch_i}
+    return msgspec.structs.replace(params, climb_p=params.final_climb_p, altitude_p=params.flare_p, **inner)
 
 
 def level_trim(params: AirParams) -> Surfaces:

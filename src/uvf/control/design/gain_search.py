@@ -48,7 +48,13 @@ LONGITUDINAL = {
     "airspeed_p": (0.2, 2.0),
     "power_pole": (0.4, 5.0),
 }
-FINAL = {"final_climb_p": (0.05, 6.0), "final_pitch_time": (0.1, 2.0), "flare_p": (0.2, 2.5)}
+FINAL = {
+    "final_climb_p": (0.05, 6.0),
+    "final_pitch_time": (0.1, 2.0),
+    "final_pitch_p": (1e-4, 2.0),
+    "final_pitch_i": (1e-3, 2.0),
+    "flare_p": (0.2, 2.5),
+}
 """Gains that are searched for, within these limits in their own units."""
 TRIALS = (600, 500, 400)  # evaluations of each simplex; the last with what is hardest
 SOFTER = (1.0, 1.5, 2.2, 3.3, 5.0, 7.5)  # times the time constants to begin with, until the loops are stable
@@ -149,7 +155,8 @@ def _designed(aircraft: AircraftLoops, params: AirParams, axis: Axis) -> AirPara
 def as_in_cruise(params: AirParams) -> AirParams:
     """With the gains of the final approach from those of cruise."""
     flare = min(max(FLARES * params.altitude_p, FINAL["flare_p"][0]), FINAL["flare_p"][1])
-    return msgspec.structs.replace(params, final_climb_p=params.climb_p, final_pitch_time=params.pitch_time, flare_p=flare)
+    same = {f"final_{name}": getattr(params, name) for name in ("climb_p", "pitch_time", "pitch_p", "pitch_i")}
+    return msgspec.structs.replace(params, flare_p=flare, **same)
 
 
 def begun(aircraft: AircraftLoops, params: AirParams) -> AirParams:
@@ -224,7 +231,7 @@ def _final(aircraft: AircraftLoops, params: AirParams, firmness: float) -> Axis:
     def build(flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
         return first.build(flight, delays, on_final(params))
 
-    gains = FINAL | {"final_pitch_time": first.gains["pitch_time"]}
+    gains = FINAL | {f"final_{name}": first.gains[name] for name in ("pitch_time", "pitch_p", "pitch_i")}
     return Axis(gains, first.opened, build, wanted, params.trim_airspeed + 0.1)
 
 

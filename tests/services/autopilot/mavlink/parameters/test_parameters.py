@@ -267,7 +267,7 @@ def test_setting_is_refused_first_by_error_then_by_the_value_that_stays(name, nu
 def test_a_limit_can_be_set_as_single_precision_has_it_and_small_numbers_stay_exact():
     rig = Rig()
     rig.run()
-    for name, number in (("ALPHA_ZERO_LIFT", 0.3), ("FOLLOW_I", 1e-41), ("CROSS_TRACK_I", 0.1)):
+    for name, number in (("ALPHA_ZERO_LIFT", 0.3), ("FOLLOW_I", 1e-41), ("CHI_INF", 1.57)):
         raw = struct.pack("<f", number)
         rig.say(setting(name, number))
         (told,) = of(rig.run(0.2), "PARAM_VALUE")
