@@ -9,8 +9,9 @@ from collections.abc import Callable
 from enum import Enum, auto
 
 from services.autopilot.air.setpoints import FlightContext, FlightPhase, PathSetpoint, Setpoint
+from uvf.control.commands import AttitudeSetpoint
 from uvf.control.cycle import clip
-from uvf.control.ground_roll import Gyros, rolling, rudder_along
+from uvf.control.ground_roll import Gyros, held, rolling, rudder_along
 from uvf.control.total_energy import climb_at
 from uvf.estimation.state import Estimate
 from uvf.estimation.wheel_height import WheelHeight
@@ -41,7 +42,10 @@ LIFTS_BELOW = 8.0  # m; from here on the flaps make lift at once
 LIFT_P, LIFT_A = 4.0, 1.0  # 1/s, per climb rate that is wanting; per lift that is not felt
 TOUCHED, STUCK = 0.12, 0.15  # m; m/s less sink than asked for
 IDLES_BELOW = 0.5  # m
+BOUNCED, FLIES = 0.3, 0.75  # m over the ground, of min_airspeed: it has bounced, or a gust has lifted it, and it flares once more
+LOOSE = 0.5  # of min_airspeed, below which surfaces hold no attitude
 TOUCH_TIME, STUCK_TIME = 0.08, 1.0  # s
+LOWERS = 1.0  # s after touching, in which the nose comes down: let go of at once, it falls, and a bounce ends on it
 BRAKES_AFTER, BRAKE = 0.8, 0.6  # s
 STOPPED, STANDS = 0.7, 1.5  # m/s, s
 
@@ -74,7 +78,7 @@ class LandingMode(FlightPhase):
         self._length = FINAL_TIME * params.min_airspeed if approach is None else approach.length
         self._wheels = WheelHeight(self.lane.aim.height)
         self._since = 0.0
-        self._gyros = Gyros(now)
+        self._gyros, self._touched_at = Gyros(now), 0.0
         slow = now.airspeed < 0.6 * params.min_airspeed  # started anew while it rolls out
         self._stage = LandingStage.ROLL if slow else LandingStage.CIRCLE
         self._circle = self._new_circle(now, params)
@@ -109,7 +113,7 @@ class LandingMode(FlightPhase):
             return self._descend(now, params)
         if self._stage is LandingStage.FINAL:
             return self._final(now, params, dt)
-        return self._roll(now, dt) if self._stage is LandingStage.ROLL else self._go_around(now, params)
+        return self._roll(now, params, dt) if self._stage is LandingStage.ROLL else self._go_around(now, params)
 
     def _to(self, stage: LandingStage) -> None:
         self._stage, self._since, self._still = stage, 0.0, 0.0
@@ -162,7 +166,7 @@ class LandingMode(FlightPhase):
             climb = max(climb, -MOST_SINK - SINK_PER_M * max(wheels.height, 0.0))
         climb += now.climb - wheels.climb  # as the estimate has it
         if flares and self._has_touched(now, climb, dt):
-            self._gyros = Gyros(now)
+            self._gyros, self._touched_at = Gyros(now), now.pitch
             self._to(LandingStage.ROLL)
         lift = self._lift(now, climb) if wheels.height < LIFTS_BELOW else 0.0
         return Setpoint(self._down(now, params, climb, fast), params.land_flap, lift=lift, firm=True)
@@ -208,7 +212,7 @@ class LandingMode(FlightPhase):
         self._still = self._still + dt if near else 0.0
         return self._still > limit
 
-    def _roll(self, now: Estimate, dt: float) -> Setpoint:
+    def _roll(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         _, right = self.lane.locate(now)
         level = self._gyros.step(now, dt)
         stands = now.ground_speed < STOPPED or not self._senses.airborne
@@ -216,6 +220,12 @@ class LandingMode(FlightPhase):
         if self._still > STANDS:
             self.ended, self.disarms = "landed", True
         rudder = rudder_along(level, self.lane.course, right)
+        seen = self._senses.clearance
+        if seen is not None and seen > BOUNCED and now.airspeed > FLIES * params.min_airspeed:
+            self._to(LandingStage.FINAL)
+        if self._since < LOWERS and now.airspeed > LOOSE * params.min_airspeed:
+            nose = AttitudeSetpoint(0.0, self._touched_at * (1 - self._since / LOWERS), 0.0, rudder)
+            return Setpoint(held(now, level, nose), firm=True)
         return Setpoint(rolling(level, rudder, 0.0, BRAKE if self._since > BRAKES_AFTER else 0.0))
 
     def _go_around(self, now: Estimate, params: AirParams) -> Setpoint:

@@ -1,6 +1,7 @@
 """Landing: where, along which path, and what makes it be given up."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from services.autopilot.air.modes.landing import TOUCH_SINK, LandingMode, flare
 from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.states import PARAMS, cruising
-from uvf.control.commands import Surfaces
+from uvf.control.commands import AttitudeSetpoint, Surfaces
 from uvf.guidance.route import Place
 from uvf.guidance.runways import LandingStrip, lane_for
 
@@ -138,11 +139,12 @@ def test_wheels_down_the_motor_is_off_and_at_rest_it_is_done():
     for _ in range(10):
         landing.step(now, PARAMS, 0.02)
     assert landing.rolls
-    rolling = landing.step(now, PARAMS, 0.02).asked
-    assert isinstance(rolling, Surfaces)
-    assert rolling.throttle == 0.0
-    for _ in range(50):
+    lowering = [landing.step(now, PARAMS, 0.02).asked for _ in range(40)]
+    assert isinstance(lowering[0], AttitudeSetpoint) and lowering[0].throttle == 0.0
+    assert lowering[0].pitch > lowering[-1].pitch > 0.0, "the nose comes down gently"
+    for _ in range(20):
         braking = landing.step(now, PARAMS, 0.02).asked
+    assert isinstance(braking, Surfaces)
     assert braking.brake > 0
     for _ in range(100):
         landing.step(cruising(ground_speed=0.2, airspeed=3.0, yaw=math.pi / 2), PARAMS, 0.02)
@@ -154,6 +156,17 @@ def test_without_a_range_finder_it_feels_that_it_sinks_no_more():
     for _ in range(60):
         landing.step(now, PARAMS, 0.02)
     assert landing.rolls
+
+
+@pytest.mark.parametrize(("airspeed", "flies"), [(18.0, True), (9.0, False)])
+def test_lifted_again_by_a_bounce_or_a_gust_it_flares_once_more_as_long_as_it_flies(airspeed, flies):
+    landing, now = on_final(2.0, 0.05, clearance=0.05)
+    for _ in range(10):
+        landing.step(now, PARAMS, 0.02)
+    assert landing.rolls
+    landing._senses.update(FlightContext(clearance=0.6))
+    landing.step(replace(now, airspeed=airspeed, height=now.height + 0.5), PARAMS, 0.02)
+    assert landing.rolls != flies
 
 
 def test_while_it_rolls_it_does_not_go_around():
