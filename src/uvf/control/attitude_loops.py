@@ -60,10 +60,9 @@ class PitchLoop:
 
     def _alpha_of(self, cycle: Cycle, load: float) -> float:
         """Angle of attack [rad] of a load factor that is asked for, which comes as lift turns the path: V / L_alpha later."""
-        params = cycle.params
-        asked = params.alpha_zero_lift + params.alpha_per_load * load * GRAVITY / cycle.eas**2
+        asked, time = cycle.alpha_with(load), max(cycle.params.alpha_per_load * cycle.speed / cycle.eas**2, LEAST)
         before = asked if self._alpha is None else self._alpha
-        self._alpha = before + (asked - before) * min(cycle.dt / max(params.alpha_per_load * cycle.speed / cycle.eas**2, LEAST), 1.0)
+        self._alpha = before + (asked - before) * min(cycle.dt / time, 1.0)
         return self._alpha
 
 

@@ -31,14 +31,12 @@ class Cycle:
         roll = clip(now.roll, FULL_BANK)
         self.load = 1 / math.cos(roll)
         """Load factor [-] of a level turn with this bank."""
-        self.alpha = params.alpha_zero_lift + params.alpha_per_load * self.load * GRAVITY / self.eas**2
+        self.alpha = self.alpha_with(self.load)
         """Angle of attack [rad] that carries this load."""
         lifting, per_load = max(params.alpha_max - params.alpha_zero_lift, LEAST), max(params.alpha_per_load, LEAST)
         lifted = lifting * self.eas**2 / (per_load * GRAVITY)
         self.load_limit = min(lifted, params.load_max)
         """Load factor [-] that the wing carries at ``alpha_max`` now, and no more than ``load_max``."""
-        self.bank_limit = self.bank_with(0.0)
-        """Bank [rad] of a level turn within ``load_limit``: the stall speed in the turn stays below the airspeed."""
         stalled = math.sqrt(params.alpha_per_load * self.load * GRAVITY / lifting)
         self.stalled = stalled * self.speed / self.eas
         """True airspeed [m/s] at which the load of now takes ``alpha_max``."""
@@ -51,6 +49,13 @@ class Cycle:
         The angle of attack of now is that of the lift that is felt: a kinematic one would take a downdraught for a stall.
         """
 
+    def alpha_with(self, load: float) -> float:
+        """Angle of attack [rad] that carries a load factor [-]."""
+        return self.params.alpha_zero_lift + self.params.alpha_per_load * load * GRAVITY / self.eas**2
+
     def bank_with(self, upward: float) -> float:
-        """Most bank [rad] at which ``load_limit`` leaves lift for an acceleration upward [m/s^2], too."""
+        """Most bank [rad] at which ``load_limit`` leaves lift for an acceleration upward [m/s^2], too.
+
+        Without one it is that of a level turn: the stall speed in the turn stays below the airspeed.
+        """
         return min(math.acos(min((1 + upward / GRAVITY) / self.load_limit, 1.0)), self.params.bank_limit)

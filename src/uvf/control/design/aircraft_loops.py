@@ -18,6 +18,7 @@ LONGITUDINAL = (("u", ("u", "w", "delta_t")), ("w", ("u", "w", "delta_e")), ("q"
 """Derivatives that come from forces of the air and the engine, each state with by what."""
 SPREAD, LAG_SPREAD = 0.3, 0.5  # of a derivative; of a lag
 CORNERS = 16
+FINAL_UP_TO = 1.005  # of the trim speed: how fast the final approach is flown at most
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ def loops(flight: FlightCondition, delays: ActuatorDelays, params: AirParams, po
     longitudinal = longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, params, given_throttle=not powered)
     for flow, opened in ((lateral, lateral_loops.LOOPS), (longitudinal, longitudinal_loops.LOOPS)):
         yield from _of(flow, opened, flight.airspeed, powered)
-    if flight.airspeed <= params.trim_airspeed + 0.1:
+    if flight.airspeed < FINAL_UP_TO * params.trim_airspeed:
         final = longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, on_final(params), given_throttle=not powered)
         yield from _of(final, longitudinal_loops.ON_FINAL, flight.airspeed, powered)
 

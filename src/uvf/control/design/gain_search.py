@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from uvf.control.design import lateral_loops, longitudinal_loops
-from uvf.control.design.aircraft_loops import AircraftLoops
+from uvf.control.design.aircraft_loops import FINAL_UP_TO, AircraftLoops
 from uvf.control.design.flight_condition import ActuatorDelays, FlightCondition
 from uvf.control.design.margins import margins
 from uvf.control.design.signal_flow import Floats, SignalFlow
@@ -207,8 +207,7 @@ def _longitudinal(aircraft: AircraftLoops, params: AirParams, firmness: float = 
     air = _air(aircraft, params)
 
     def wanted(flow: SignalFlow) -> float:
-        error = np.hypot(air.rms(flow, "h", "uwq"), disturbed(flow, "h", "pitch", *PITCH_OFF))
-        way = WAY * air.rms(flow, "servo_e", "uwq", rate=True)
+        error, way = _above(air, flow)
         throttle = np.sqrt(2 / np.pi) * air.rms(flow, "servo_t", "uwq", rate=True) if aircraft.powered else 0.0
         return _within(firmness * error / ABOVE, air.rms(flow, "airspeed", "uwq") / FASTER, way / PITCH_WAY, throttle / THROTTLE_WAY)
 
@@ -219,20 +218,26 @@ def _longitudinal(aircraft: AircraftLoops, params: AirParams, firmness: float = 
     return Axis(gains, loops, partial(longitudinal_loops.longitudinal_flow, OMEGA, given_throttle=not aircraft.powered), wanted)
 
 
+def _above(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
+    """Error of height [m] in gusts and after disturbances of pitch, and the way of the elevator [deg/s]."""
+    error = float(np.hypot(air.rms(flow, "h", "uwq"), disturbed(flow, "h", "pitch", *PITCH_OFF)))
+    return error, WAY * air.rms(flow, "servo_e", "uwq", rate=True)
+
+
 def _final(aircraft: AircraftLoops, params: AirParams, firmness: float) -> Axis:
-    """Climb and pitch near the ground, where comfort does not count: as stiff as the inner loop's gains of cruise allow."""
+    """Climb and pitch near the ground, where comfort does not count: as stiff as the margins allow."""
     air = _air(aircraft, params)
     first = _longitudinal(aircraft, params)
 
     def wanted(flow: SignalFlow) -> float:
-        error = np.hypot(air.rms(flow, "h", "uwq"), disturbed(flow, "h", "pitch", *PITCH_OFF))
-        return _within(firmness * error / (FINAL_SHARE * ABOVE), WAY * air.rms(flow, "servo_e", "uwq", rate=True) / (FINAL_WAY * PITCH_WAY))
+        error, way = _above(air, flow)
+        return _within(firmness * error / (FINAL_SHARE * ABOVE), way / (FINAL_WAY * PITCH_WAY))
 
     def build(flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
         return first.build(flight, delays, on_final(params))
 
     gains = FINAL | {f"final_{name}": first.gains[name] for name in ("pitch_time", "pitch_p", "pitch_i")}
-    return Axis(gains, first.opened, build, wanted, params.trim_airspeed + 0.1)
+    return Axis(gains, first.opened, build, wanted, FINAL_UP_TO * params.trim_airspeed)
 
 
 def _inner(axis: str, delay: float, ahead: float, gains: Mapping[str, Limits]) -> dict[str, Limits]:

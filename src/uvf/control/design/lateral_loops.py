@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from uvf.control.design.flight_condition import FORCE_TIME, GYRO_TIME, ActuatorDelays, FlightCondition
 from uvf.control.design.signal_flow import Floats, SignalFlow
 from uvf.maths.geodesy import GRAVITY
@@ -15,11 +13,7 @@ SIGNALS = (
     *("path_trim", "bank", "roll_trim", "aileron_asked", "slip_trim", "rudder_asked"),
     *("servo_a", "servo_r", "delta_a", "delta_r"),
 )
-INPUTS = (
-    "gust_v",
-    "gust_p",
-    "gust_r",
-)
+INPUTS = ("gust_v", "gust_p", "gust_r")
 IN_AIR = {"v": ("v",), "p": ("v", "p", "r"), "r": ("v", "p", "r")}
 LOOPS = {"path": "bank", "roll": "aileron_asked", "yaw": "rudder_asked"}
 """Where each is opened."""
@@ -30,10 +24,8 @@ def lateral_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays,
     flow = SignalFlow(omega, SIGNALS, INPUTS)
     flow.opens(*LOOPS.values())
     _airframe(flow, flight)
-    for surface, asked in (("a", "aileron"), ("r", "rudder")):
-        servo, model = getattr(delays, asked)
-        flow.lag(f"servo_{surface}", servo, {f"{asked}_asked": np.exp(-delays.dead_time * flow.s)})
-        flow.lag(f"delta_{surface}", model, {f"servo_{surface}": 1.0})
+    flow.actuator("a", "aileron_asked", delays.aileron, delays.dead_time)
+    flow.actuator("r", "rudder_asked", delays.rudder, delays.dead_time)
     flow.lag("p_felt", GYRO_TIME, {"p": 1.0})
     flow.lag("r_felt", GYRO_TIME, {"r": 1.0})
     _guidance(flow, flight, params)

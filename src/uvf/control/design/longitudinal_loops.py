@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from uvf.control.design.flight_condition import AIRSPEED_TIME, GYRO_TIME, ActuatorDelays, FlightCondition
 from uvf.control.design.signal_flow import Floats, SignalFlow
 from uvf.maths.geodesy import GRAVITY
@@ -29,11 +27,8 @@ def longitudinal_flow(
     flow = SignalFlow(omega, SIGNALS, INPUTS)
     flow.opens(*LOOPS.values())
     _airframe(flow, flight)
-    late = np.exp(-delays.dead_time * flow.s)
-    flow.lag("servo_e", delays.elevator[0], {"elevator_asked": late})
-    flow.lag("delta_e", delays.elevator[1], {"servo_e": 1.0})
-    flow.lag("servo_t", delays.throttle[0], {} if given_throttle else {"throttle_asked": late})
-    flow.lag("delta_t", delays.throttle[1], {"servo_t": 1.0})
+    flow.actuator("e", "elevator_asked", delays.elevator, delays.dead_time)
+    flow.actuator("t", None if given_throttle else "throttle_asked", delays.throttle, delays.dead_time)
     flow.lag("q_felt", GYRO_TIME, {"q": 1.0})
     flow.lag("airspeed_felt", AIRSPEED_TIME, {"airspeed": 1.0})
     _height(flow, flight, params)

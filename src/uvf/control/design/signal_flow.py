@@ -46,6 +46,12 @@ class SignalFlow:
         self._order += int(time > 0.0)
         self._set(name, 1.0 + time * self.s, terms)
 
+    def actuator(self, letter: str, asked: str | None, lags: tuple[float, float], late: float) -> None:
+        """``delta_LETTER`` behind ``servo_LETTER`` behind the signal ``asked``: lags and dead time in [s]; None: it holds."""
+        servo, model = lags
+        self.lag(f"servo_{letter}", servo, {asked: np.exp(-late * self.s)} if asked is not None else {})
+        self.lag(f"delta_{letter}", model, {f"servo_{letter}": 1.0})
+
     def airframe(self, model: StateSpace, states: Sequence[str], in_air: Mapping[str, Sequence[str]]) -> None:
         """The rates of change of a model's states. Gusts count as the aircraft's own motion the other way, but for what is kinematic.
 

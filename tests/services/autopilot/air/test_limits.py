@@ -29,18 +29,18 @@ def stall_speed(load):
 
 @pytest.mark.parametrize("airspeed", [17.0, 19.0, 21.0, 23.0])
 def test_the_stall_speed_in_the_steepest_turn_is_not_above_the_airspeed(airspeed):
-    limit = cycle(airspeed=airspeed).bank_limit
+    limit = cycle(airspeed=airspeed).bank_with(0.0)
     assert stall_speed(1 / math.cos(limit)) <= airspeed + 1e-9
 
 
 def test_the_bank_is_limited_by_the_parameter_when_fast_and_to_wings_level_below_the_stall():
-    assert cycle(airspeed=30.0).bank_limit == PARAMS.bank_limit
-    assert cycle(airspeed=14.0).bank_limit == 0.0
+    assert cycle(airspeed=30.0).bank_with(0.0) == PARAMS.bank_limit
+    assert cycle(airspeed=14.0).bank_with(0.0) == 0.0
 
 
 def test_a_turn_stays_within_the_load_factor():
     strict = type(PARAMS)(**{name: getattr(PARAMS, name) for name in PARAMS.__struct_fields__} | {"load_max": 1.5})
-    assert 1 / math.cos(Cycle(cruising(airspeed=30.0), strict, DT).bank_limit) == pytest.approx(1.5)
+    assert 1 / math.cos(Cycle(cruising(airspeed=30.0), strict, DT).bank_with(0.0)) == pytest.approx(1.5)
 
 
 def test_near_the_largest_angle_of_attack_the_nose_is_not_raised_further_and_beyond_it_is_lowered():
@@ -103,4 +103,4 @@ def test_an_integrator_does_not_wait_for_a_servo_that_keeps_up():
 @pytest.mark.parametrize("no_wing", [{"alpha_per_load": 0.0}, {"alpha_max": 0.05, "alpha_zero_lift": 0.3}])
 def test_parameters_that_make_no_wing_leave_limits_that_are_numbers(no_wing):
     cycle = Cycle(cruising(), msgspec.structs.replace(PARAMS, **no_wing), DT)
-    assert all(map(math.isfinite, (cycle.load_limit, cycle.bank_limit, cycle.stalled, cycle.highest_pitch)))
+    assert all(map(math.isfinite, (cycle.load_limit, cycle.bank_with(0.0), cycle.stalled, cycle.highest_pitch)))
