@@ -1,15 +1,18 @@
 """What is wrong with an aircraft: its model's files, its names, its trim, its signs, its landing gear."""
 
-from collections.abc import Iterator
-from dataclasses import replace
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import msgspec
 import numpy as np
 
+from services.sim_air.actuators import Actuators
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import InitialState
+from services.sim_air.engine.states import InitialState, Runaway
 from services.sim_air.engine.trim import Trim
+from services.sim_air.engine.wiring import Controls
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import to_euler
 from uvf.models.jsbsim.model_file import model_faults
@@ -22,6 +25,11 @@ SEA_LEVEL = LocalTangent.from_degrees(0.0, 0.0, 0.0)
 HEIGHT = 100.0  # m, where level flight is tried
 HIGHEST = 4800.0  # Hz
 ABOUT_LEVEL = Trim(alpha=0.05, roll=0.0, aileron=0.0, elevator=0.0, rudder=0.0, throttle=0.5)
+BODY = 0.15  # of the span, to each side
+LANDING_PITCH, RESTS = 0.25, 0.01  # rad; m
+STANDING = InitialState(np.zeros(3), 0.0, 0.0, np.zeros(3))
+CYCLES = 50.0  # 1/s, in which the throttle opens
+RUN_UP, JUMP, ROLLS_OFF = 2.0, 0.5, 4.0  # s; rad/s of roll and m/s up; m/s
 FULL = 0.5  # of a surface's limit, tried from the trim
 RIGHT_WAY = {"aileron": (3, 1, "rolls right"), "elevator": (4, -1, "pitches down"), "rudder": (5, -1, "yaws left")}
 """For each surface the body acceleration (of u, v, w, p, q, r; FRD) that it is for, its sign and its name."""
@@ -110,7 +118,7 @@ def _idle(effects: dict[str, np.ndarray], air: AirBody, place: FileLocation) -> 
 def _gear_faults(models: Path, air: AirBody, place: FileLocation) -> Iterator[str]:
     if comes_to_rest(models, air, air.physics_hz):
         return
-    where, fell = place.at("physics_hz"), "it does not come to rest on its wheels"
+    where, fell = place.at("physics_hz"), "it does not come to rest on its wheels, or jumps when its motor runs up"
     rate = air.physics_hz
     while (rate := rate * 2) <= HIGHEST:
         if comes_to_rest(models, air, rate):
@@ -120,17 +128,66 @@ def _gear_faults(models: Path, air: AirBody, place: FileLocation) -> Iterator[st
 
 
 def comes_to_rest(models: Path, air: AirBody, rate: float) -> bool:
-    """Whether the aircraft comes to rest on its wheels with ``rate`` [1/s] physics steps, as it has to when it begins on them."""
-    return stands(models, air, rate) is not None
+    """Whether the aircraft comes to rest on its wheels with ``rate`` [1/s] physics steps, as it has to when it begins on them.
 
-
-def stands(models: Path, air: AirBody, rate: float) -> tuple[float, float] | None:
-    """Height [m] and pitch [rad] at which the aircraft stands with ``rate`` [1/s] physics steps; None where it does not come to rest."""
+    Nor does it jump when its motor runs up: the torque of a light propeller takes shorter steps than its springs.
+    """
     airframe = Airframe(models, msgspec.structs.replace(air, physics_hz=rate), SEA_LEVEL)
     try:
-        airframe.stand(InitialState(np.zeros(3), 0.0, 0.0, np.zeros(3)))
+        airframe.stand(STANDING)
+        return not (airframe.has_wheels and airframe.powered) or _runs_up(airframe, Actuators(Controls(brake=1.0), air), rate)
+    except (BadInput, Runaway):
+        return False
+
+
+def _runs_up(airframe: Airframe, actuators: Actuators, rate: float) -> bool:
+    """Whether it stays on the ground and upright while the throttle opens, in the steps of an autopilot."""
+    for i in range(round(RUN_UP * rate)):
+        opened = math.floor(i * CYCLES / rate) / (CYCLES * RUN_UP / 2)
+        airframe.command(actuators.step(Controls(throttle=min(opened, 1.0)), 1 / rate))
+        airframe.step()
+        motion = airframe.motion()
+        if motion.airspeed > ROLLS_OFF:
+            return True
+        if max(abs(motion.angular_velocity[0]), abs(motion.velocity[2])) > JUMP:
+            return False
+    return True
+
+
+@dataclass(frozen=True)
+class GroundStance:
+    """How an aircraft stands: height [m] of the centre of gravity, pitch [rad], and on what."""
+
+    height: float
+    pitch: float
+    gear: str
+    """As the parameter ``gear``."""
+    skids: list[str]
+    """Parts of the structure that it lies on, for want of wheels."""
+
+
+def stands(models: Path, air: AirBody, rate: float) -> GroundStance | None:
+    """How the aircraft stands with ``rate`` [1/s] physics steps; None where it does not come to rest."""
+    airframe = Airframe(models, msgspec.structs.replace(air, physics_hz=rate), SEA_LEVEL)
+    try:
+        airframe.stand(STANDING)
     except BadInput:
         return None
     motion = airframe.motion()
     _, pitch, _ = to_euler(motion.world_from_body)
-    return float(motion.position[2]), -pitch
+    places = airframe.contacts()
+    on = np.array([places[touch.name] for touch in airframe.touches()])
+    if not airframe.has_wheels:
+        return GroundStance(float(motion.position[2]), -pitch, "belly", list(_underside(places, on, airframe.span)))
+    aside = np.abs(on[:, 1])
+    main, middle = on[aside > aside.max() / 2], on[aside <= aside.max() / 2]
+    tail = len(middle) > 0 and middle[:, 0].max() < main[:, 0].min()
+    return GroundStance(float(motion.position[2]), -pitch, "tail_wheel" if tail else "nose_wheel", [])
+
+
+def _underside(places: Mapping[str, np.ndarray], on: np.ndarray, span: float) -> Iterator[str]:
+    """Contacts that touch the ground when it lies, and those of the body that do with its nose or tail a little lower."""
+    lowest, middle = on[:, 2].min(), on[:, 0].mean()
+    for name, (x, y, z) in places.items():
+        if abs(y) < BODY * span and z - lowest <= max(LANDING_PITCH * abs(x - middle), RESTS):
+            yield name

@@ -14,7 +14,7 @@ from services.sim_air.engine.trim import Trim
 from services.sim_air.engine.wiring import Controls
 from uvf.models.importing.notes import Notes
 from uvf.models.jsbsim.model_parts import Unmade, properties_read
-from uvf.models.vehicle.air import AirBody, Lever, Surface
+from uvf.models.vehicle.air import AirBody, Surface
 from uvf.models.yaml_data import BadInput
 
 RATES = (120.0, 240.0, 480.0, 960.0, 1920.0)  # Hz; the first is JSBSim's own
@@ -60,7 +60,7 @@ def _with_throttle(folder: Path, body: AirBody, notes: Notes) -> AirBody:
     read = properties_read(folder / body.model / f"{body.model}.xml")
     names = [name for name in read if "throttle" in name.rpartition("/")[2] and "pos" not in name]
     for name in names:
-        throttle = msgspec.structs.replace(body.controls, throttle=Lever(property=name))
+        throttle = msgspec.structs.replace(body.controls, throttle=msgspec.structs.replace(body.controls.throttle, property=name))
         made = msgspec.structs.replace(body, controls=throttle, settings={**body.settings, name: 0.0})
         airframe = Airframe(folder, made, SEA_LEVEL)
         airframe.hold_still(True)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from launch.vehicles.aircraft_rules import HEIGHT
+from launch.vehicles.aircraft_rules import ABOUT_LEVEL, HEIGHT
 from launch.vehicles.aircraft_trial import level
 from services.sim_air.analysis.equilibrium import Condition, find
 from services.sim_air.analysis.linear import LinearModels, held_still, linearize
@@ -30,6 +30,8 @@ BANK = 0.7  # tangent of the bank of a holding circle
 MARGIN = 1.1  # of a speed over that at which the wing stalls
 HIGHEST_ALPHA = 0.25  # rad, where a model tells of no stall
 IDLING = (0.0, 0.15, 0.3)
+THROTTLES = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
+TAKE_OFF, STARTING = 4.0, 0.3  # m/s^2, of trim speed
 LOWERED, FLAP_STEPS = 0.1, (1e-3, 1e-3, 0.05)  # rad of flap; rad of alpha, elevator and flap
 
 
@@ -47,7 +49,17 @@ def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
     climbs = SHARE * (1 - found["trim_throttle"]) / max(found["throttle_climb"], 1e-3)
     for name, reach in (("climb_max", climbs), ("sink_max", dives)):
         found[name] = min(max(min(reach, STEEPEST * body.trim_speed), 0.5), 15.0)
+    needed = found["trim_throttle"] + found["throttle_climb"] * found["climb_max"]
+    found["takeoff_throttle"] = max(_pulling(airframe, body.trim_speed), min(needed, 1.0))
     return {name: float(f"{value:.3g}") for name, value in found.items()}
+
+
+def _pulling(airframe: Airframe, speed: float) -> float:
+    """Throttle, 0 to 1, that accelerates it by TAKE_OFF at the beginning of its run: a model's motor often pulls with its whole weight."""
+    run = level(STARTING * speed)
+    with held_still(airframe):
+        idle, *pulls = (airframe.accelerations(run, replace(ABOUT_LEVEL, throttle=throttle))[0] for throttle in THROTTLES)
+    return float(np.interp(TAKE_OFF, np.maximum.accumulate([0.0, *(pull - idle for pull in pulls)]), THROTTLES))
 
 
 def _balance(airframe: Airframe, speed: float) -> dict[str, float]:

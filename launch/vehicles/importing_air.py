@@ -10,7 +10,7 @@ import msgspec
 import yaml
 
 from launch.vehicles.air_design import modelled, timing
-from launch.vehicles.aircraft_rules import SEA_LEVEL, stands
+from launch.vehicles.aircraft_rules import SEA_LEVEL, GroundStance, stands
 from launch.vehicles.aircraft_trial import tried
 from launch.vehicles.autopilot_guess import autopilot_figures
 from launch.vehicles.tuning import rounded
@@ -20,15 +20,20 @@ from uvf.maths.atmosphere import RHO0
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.importing.jsbsim import copy_model, has_actuators
 from uvf.models.importing.notes import Notes
-from uvf.models.jsbsim.model_file import weight_and_wing
-from uvf.models.vehicle.air import AirBody, CommandProperties
+from uvf.models.jsbsim.model_file import steers_by_brakes, weight_and_wing
+from uvf.models.vehicle.air import AirBody, CommandProperties, Lever
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
 
 NOTES = "import.txt"
 LIFT = 0.5  # coefficient at which the speed is first tried
+GEAR = {"nose_wheel": "wheels, one of them under its nose", "tail_wheel": "wheels, one of them under its tail", "belly": "its belly"}
+PUSH = 6.0  # m/s^2, by which a throw or a bungee is felt
+BRAKE_STEERING = 2.5  # per rad of rudder
+LAND_FLAP = 0.3  # of their travel
 LIGHT = 50.0  # kg, below which an aircraft has servos of models
+MOTOR_LAG = 0.1  # s
 SERVOS = {True: (6.0, 0.05), False: (1.0, 0.05)}  # rad/s, s
 SENSORS = {
     "imu": {
@@ -68,11 +73,17 @@ def _described(vehicle: str, model: str) -> tuple[dict[str, Any], list[str]]:
     own = has_actuators(folder / model / f"{model}.xml")
     rate, lag = (None, 0.0) if own else SERVOS[mass < LIGHT]
     speed = float(f"{math.sqrt(2 * mass * GRAVITY / (RHO0 * wing * LIFT)):.2g}")
-    body = tried(folder, AirBody(model=model, physics_hz=120.0, trim_speed=speed, servo_rate=rate, servo_lag=lag), notes)
-    servos = "found: servos in the model" if own else f"guessed: servos of {rate:g} rad/s with a lag of {lag:g} s"
+    controls = CommandProperties(throttle=Lever(lag=0.0 if own else MOTOR_LAG))
+    first = AirBody(model=model, physics_hz=120.0, trim_speed=speed, servo_rate=rate, servo_lag=lag, controls=controls)
+    body = tried(folder, first, notes)
+    servos = f"guessed: servos of {rate:g} rad/s with a lag of {lag:g} s, a motor of {MOTOR_LAG:g} s"
+    servos = "found: servos in the model" if own else servos
     notes.add(f"{servos}; guessed: sensors, the sink rate that the landing gear holds")
+    stance = stands(folder, body, body.physics_hz)
+    if stance is not None:
+        body = msgspec.structs.replace(body, skids=stance.skids)
     data: dict[str, Any] = {"kind": "fixed_wing", "about": "", "air": _air(body), "sensors": SENSORS}
-    if figures := _autopilot(folder, body, notes):
+    if figures := _autopilot(folder, body, stance, notes):
         data["params"] = {"autopilot_air": figures}
     return data, notes.lines()
 
@@ -85,26 +96,37 @@ def _air(body: AirBody) -> dict[str, Any]:
         if different := {key: value for key, value in own.items() if value != usual[key]}:
             controls[name] = different
     keys = ("model", "physics_hz", "trim_speed", "servo_rate", "servo_lag")
-    return {key: getattr(body, key) for key in keys} | {"controls": controls} | ({"settings": body.settings} if body.settings else {})
+    given = {key: value for key in ("settings", "skids") if (value := getattr(body, key))}
+    return {key: getattr(body, key) for key in keys} | {"controls": controls} | given
 
 
-def _gear(folder: Path, body: AirBody, notes: Notes) -> dict[str, float]:
-    """How high the aircraft stands on its wheels."""
-    standing = stands(folder, body, body.physics_hz)
-    if standing is None:
-        return {}
-    height, pitch = standing
-    notes.add(f"found: it stands {height:.2f} m high, its nose {abs(math.degrees(pitch)):.0f} degrees {'up' if pitch >= 0 else 'down'}")
-    return {"gear_height": float(f"{height:.3g}")}
+def _gear(path: Path, stance: GroundStance, body: AirBody, notes: Notes) -> dict[str, float | str]:
+    """Autopilot parameters of how it stands, takes off and lands."""
+    up = f"its nose {abs(math.degrees(stance.pitch)):.0f} degrees {'up' if stance.pitch >= 0 else 'down'}"
+    on = GEAR[stance.gear]
+    notes.add(f"found: it stands {stance.height:.2f} m high on {on}, {up}")
+    figures: dict[str, float | str] = {"gear_height": _short(stance.height), "gear": stance.gear, "rest_pitch": _short(stance.pitch)}
+    if steers_by_brakes(path):
+        notes.add("found: no wheel follows its rudder; on the ground it is steered by its brakes")
+        figures["brake_steering"] = BRAKE_STEERING
+    if stance.gear == "belly":
+        notes.add("it has no wheels: it is thrown, by 'launch' under 'start' of a mission, and slides on", ", ".join(stance.skids))
+        figures["launch_push"] = PUSH
+    flap = body.controls.flap.limit
+    return figures | ({"land_flap": _short(LAND_FLAP * flap)} if flap > 0 else {})
 
 
-def _autopilot(folder: Path, body: AirBody, notes: Notes) -> dict[str, float]:
+def _short(value: float) -> float:
+    return float(f"{value:.3g}")
+
+
+def _autopilot(folder: Path, body: AirBody, stance: GroundStance | None, notes: Notes) -> dict[str, float | str]:
     airframe = Airframe(folder, body, SEA_LEVEL)
     if not airframe.powered:
         notes.add("no autopilot figures: it has no engine, and glides")
         return {}
     try:
-        figures = autopilot_figures(airframe, body) | _gear(folder, body, notes)
+        figures = autopilot_figures(airframe, body)
         known = msgspec.structs.replace(AirParams(), **figures)
         aircraft = modelled(airframe, body, known)
         params = rounded(begun(aircraft.loops, known))
@@ -117,4 +139,6 @@ def _autopilot(folder: Path, body: AirBody, notes: Notes) -> dict[str, float]:
         notes.add(f"with these gains it is unstable at {unstable[0].airspeed:.0f} m/s")
     notes.add("'uvf vehicle tune NAME --write' designs its gains and shows their margins")
     gains = {name: getattr(params, name) for name in (*LATERAL, *LONGITUDINAL, *FINAL)}
-    return figures | gains | timing(aircraft, params, body.controls.aileron.limit)
+    path = folder / body.model / f"{body.model}.xml"
+    leads = {name: _short(value) for name, value in timing(aircraft, params, body.controls.aileron.limit).items()}
+    return figures | gains | leads | (_gear(path, stance, body, notes) if stance else {})

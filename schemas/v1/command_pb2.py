@@ -26,7 +26,7 @@ from foxglove_schemas_protobuf import Vector3_pb2 as foxglove_dot_Vector3__pb2
 from google.protobuf import timestamp_pb2 as google_dot_protobuf_dot_timestamp__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14uvf/v1/command.proto\x12\x06uvf.v1\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"o\n\x0c\x44riveCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0e\n\x06linear\x18\x02 \x01(\x01\x12\x0f\n\x07\x61ngular\x18\x03 \x01(\x01\x12\x0f\n\x07lateral\x18\x04 \x01(\x01\"z\n\x0cWheelCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0c\n\x04left\x18\x02 \x01(\x01\x12\r\n\x05right\x18\x03 \x01(\x01\x12\x0c\n\x04\x65\x61\x63h\x18\x04 \x03(\x01\x12\x10\n\x08steering\x18\x05 \x01(\x01\"-\n\x0bJointTarget\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x10\n\x08position\x18\x02 \x01(\x01\"H\n\x11MoveJointsRequest\x12#\n\x06joints\x18\x01 \x03(\x0b\x32\x13.uvf.v1.JointTarget\x12\x0e\n\x06source\x18\x02 \x01(\t\"\xa1\x01\n\x0eSurfaceCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07\x61ileron\x18\x02 \x01(\x01\x12\x10\n\x08\x65levator\x18\x03 \x01(\x01\x12\x0e\n\x06rudder\x18\x04 \x01(\x01\x12\x10\n\x08throttle\x18\x05 \x01(\x01\x12\x0c\n\x04\x66lap\x18\x06 \x01(\x01\x12\r\n\x05\x62rake\x18\x07 \x01(\x01\"\xab\x01\n\rGimbalCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0b\n\x03pan\x18\x02 \x01(\x01\x12\x0c\n\x04tilt\x18\x03 \x01(\x01\x12(\n\x04mode\x18\x04 \x01(\x0e\x32\x1a.uvf.v1.GimbalCommand.Mode\"&\n\x04Mode\x12\n\n\x06\x46OLLOW\x10\x00\x12\x08\n\x04LOCK\x10\x01\x12\x08\n\x04\x42ODY\x10\x02\"g\n\x0eStopEngagement\x12\x0e\n\x06source\x18\x01 \x01(\t\x12\n\n\x02id\x18\x02 \x01(\x04\x12\x0e\n\x06reason\x18\x03 \x01(\t\x12)\n\x05since\x18\x04 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\"\xa3\x01\n\x0bStopCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07\x65ngaged\x18\x02 \x01(\x08\x12\x0e\n\x06source\x18\x03 \x01(\t\x12\n\n\x02id\x18\x04 \x01(\x04\x12\x0e\n\x06reason\x18\x05 \x01(\t\x12(\n\x08releases\x18\x06 \x03(\x0b\x32\x16.uvf.v1.StopEngagement\"\x91\x01\n\tStopState\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12+\n\x0b\x65ngagements\x18\x02 \x03(\x0b\x32\x16.uvf.v1.StopEngagement\x12(\n\x08released\x18\x03 \x03(\x0b\x32\x16.uvf.v1.StopEngagement\"\xef\x01\n\x0e\x46lightSetpoint\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12,\n\x08\x61ttitude\x18\x02 \x01(\x0b\x32\x18.uvf.v1.AttitudeSetpointH\x00\x12(\n\x06\x63ourse\x18\x03 \x01(\x0b\x32\x16.uvf.v1.CourseSetpointH\x00\x12$\n\x04line\x18\x04 \x01(\x0b\x32\x14.uvf.v1.LineSetpointH\x00\x12(\n\x06\x63ircle\x18\x05 \x01(\x0b\x32\x16.uvf.v1.CircleSetpointH\x00\x42\x06\n\x04kind\"A\n\x10\x41ttitudeSetpoint\x12\x0c\n\x04\x62\x61nk\x18\x01 \x01(\x01\x12\r\n\x05pitch\x18\x02 \x01(\x01\x12\x10\n\x08throttle\x18\x03 \x01(\x01\"D\n\x0e\x43ourseSetpoint\x12\x0e\n\x06\x63ourse\x18\x01 \x01(\x01\x12\x10\n\x08\x61ltitude\x18\x02 \x01(\x01\x12\x10\n\x08\x61irspeed\x18\x03 \x01(\x01\"i\n\x0cLineSetpoint\x12!\n\x06origin\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12$\n\tdirection\x18\x02 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x10\n\x08\x61irspeed\x18\x03 \x01(\x01\"U\n\x0e\x43ircleSetpoint\x12!\n\x06\x63\x65ntre\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06radius\x18\x02 \x01(\x01\x12\x10\n\x08\x61irspeed\x18\x03 \x01(\x01\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14uvf/v1/command.proto\x12\x06uvf.v1\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"o\n\x0c\x44riveCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0e\n\x06linear\x18\x02 \x01(\x01\x12\x0f\n\x07\x61ngular\x18\x03 \x01(\x01\x12\x0f\n\x07lateral\x18\x04 \x01(\x01\"z\n\x0cWheelCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0c\n\x04left\x18\x02 \x01(\x01\x12\r\n\x05right\x18\x03 \x01(\x01\x12\x0c\n\x04\x65\x61\x63h\x18\x04 \x03(\x01\x12\x10\n\x08steering\x18\x05 \x01(\x01\"-\n\x0bJointTarget\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x10\n\x08position\x18\x02 \x01(\x01\"H\n\x11MoveJointsRequest\x12#\n\x06joints\x18\x01 \x03(\x0b\x32\x13.uvf.v1.JointTarget\x12\x0e\n\x06source\x18\x02 \x01(\t\"\xbb\x01\n\x0eSurfaceCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07\x61ileron\x18\x02 \x01(\x01\x12\x10\n\x08\x65levator\x18\x03 \x01(\x01\x12\x0e\n\x06rudder\x18\x04 \x01(\x01\x12\x10\n\x08throttle\x18\x05 \x01(\x01\x12\x0c\n\x04\x66lap\x18\x06 \x01(\x01\x12\r\n\x05\x62rake\x18\x07 \x01(\x01\x12\x18\n\x10\x62rake_difference\x18\x08 \x01(\x01\"\xab\x01\n\rGimbalCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0b\n\x03pan\x18\x02 \x01(\x01\x12\x0c\n\x04tilt\x18\x03 \x01(\x01\x12(\n\x04mode\x18\x04 \x01(\x0e\x32\x1a.uvf.v1.GimbalCommand.Mode\"&\n\x04Mode\x12\n\n\x06\x46OLLOW\x10\x00\x12\x08\n\x04LOCK\x10\x01\x12\x08\n\x04\x42ODY\x10\x02\"g\n\x0eStopEngagement\x12\x0e\n\x06source\x18\x01 \x01(\t\x12\n\n\x02id\x18\x02 \x01(\x04\x12\x0e\n\x06reason\x18\x03 \x01(\t\x12)\n\x05since\x18\x04 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\"\xa3\x01\n\x0bStopCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07\x65ngaged\x18\x02 \x01(\x08\x12\x0e\n\x06source\x18\x03 \x01(\t\x12\n\n\x02id\x18\x04 \x01(\x04\x12\x0e\n\x06reason\x18\x05 \x01(\t\x12(\n\x08releases\x18\x06 \x03(\x0b\x32\x16.uvf.v1.StopEngagement\"\x91\x01\n\tStopState\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12+\n\x0b\x65ngagements\x18\x02 \x03(\x0b\x32\x16.uvf.v1.StopEngagement\x12(\n\x08released\x18\x03 \x03(\x0b\x32\x16.uvf.v1.StopEngagement\"\xef\x01\n\x0e\x46lightSetpoint\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12,\n\x08\x61ttitude\x18\x02 \x01(\x0b\x32\x18.uvf.v1.AttitudeSetpointH\x00\x12(\n\x06\x63ourse\x18\x03 \x01(\x0b\x32\x16.uvf.v1.CourseSetpointH\x00\x12$\n\x04line\x18\x04 \x01(\x0b\x32\x14.uvf.v1.LineSetpointH\x00\x12(\n\x06\x63ircle\x18\x05 \x01(\x0b\x32\x16.uvf.v1.CircleSetpointH\x00\x42\x06\n\x04kind\"A\n\x10\x41ttitudeSetpoint\x12\x0c\n\x04\x62\x61nk\x18\x01 \x01(\x01\x12\r\n\x05pitch\x18\x02 \x01(\x01\x12\x10\n\x08throttle\x18\x03 \x01(\x01\"D\n\x0e\x43ourseSetpoint\x12\x0e\n\x06\x63ourse\x18\x01 \x01(\x01\x12\x10\n\x08\x61ltitude\x18\x02 \x01(\x01\x12\x10\n\x08\x61irspeed\x18\x03 \x01(\x01\"i\n\x0cLineSetpoint\x12!\n\x06origin\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12$\n\tdirection\x18\x02 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x10\n\x08\x61irspeed\x18\x03 \x01(\x01\"U\n\x0e\x43ircleSetpoint\x12!\n\x06\x63\x65ntre\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06radius\x18\x02 \x01(\x01\x12\x10\n\x08\x61irspeed\x18\x03 \x01(\x01\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -42,25 +42,25 @@ if not _descriptor._USE_C_DESCRIPTORS:
   _globals['_MOVEJOINTSREQUEST']._serialized_start=373
   _globals['_MOVEJOINTSREQUEST']._serialized_end=445
   _globals['_SURFACECOMMAND']._serialized_start=448
-  _globals['_SURFACECOMMAND']._serialized_end=609
-  _globals['_GIMBALCOMMAND']._serialized_start=612
-  _globals['_GIMBALCOMMAND']._serialized_end=783
-  _globals['_GIMBALCOMMAND_MODE']._serialized_start=745
-  _globals['_GIMBALCOMMAND_MODE']._serialized_end=783
-  _globals['_STOPENGAGEMENT']._serialized_start=785
-  _globals['_STOPENGAGEMENT']._serialized_end=888
-  _globals['_STOPCOMMAND']._serialized_start=891
-  _globals['_STOPCOMMAND']._serialized_end=1054
-  _globals['_STOPSTATE']._serialized_start=1057
-  _globals['_STOPSTATE']._serialized_end=1202
-  _globals['_FLIGHTSETPOINT']._serialized_start=1205
-  _globals['_FLIGHTSETPOINT']._serialized_end=1444
-  _globals['_ATTITUDESETPOINT']._serialized_start=1446
-  _globals['_ATTITUDESETPOINT']._serialized_end=1511
-  _globals['_COURSESETPOINT']._serialized_start=1513
-  _globals['_COURSESETPOINT']._serialized_end=1581
-  _globals['_LINESETPOINT']._serialized_start=1583
-  _globals['_LINESETPOINT']._serialized_end=1688
-  _globals['_CIRCLESETPOINT']._serialized_start=1690
-  _globals['_CIRCLESETPOINT']._serialized_end=1775
+  _globals['_SURFACECOMMAND']._serialized_end=635
+  _globals['_GIMBALCOMMAND']._serialized_start=638
+  _globals['_GIMBALCOMMAND']._serialized_end=809
+  _globals['_GIMBALCOMMAND_MODE']._serialized_start=771
+  _globals['_GIMBALCOMMAND_MODE']._serialized_end=809
+  _globals['_STOPENGAGEMENT']._serialized_start=811
+  _globals['_STOPENGAGEMENT']._serialized_end=914
+  _globals['_STOPCOMMAND']._serialized_start=917
+  _globals['_STOPCOMMAND']._serialized_end=1080
+  _globals['_STOPSTATE']._serialized_start=1083
+  _globals['_STOPSTATE']._serialized_end=1228
+  _globals['_FLIGHTSETPOINT']._serialized_start=1231
+  _globals['_FLIGHTSETPOINT']._serialized_end=1470
+  _globals['_ATTITUDESETPOINT']._serialized_start=1472
+  _globals['_ATTITUDESETPOINT']._serialized_end=1537
+  _globals['_COURSESETPOINT']._serialized_start=1539
+  _globals['_COURSESETPOINT']._serialized_end=1607
+  _globals['_LINESETPOINT']._serialized_start=1609
+  _globals['_LINESETPOINT']._serialized_end=1714
+  _globals['_CIRCLESETPOINT']._serialized_start=1716
+  _globals['_CIRCLESETPOINT']._serialized_end=1801
 # @@protoc_insertion_point(module_scope)

@@ -51,7 +51,7 @@ class MoveJointsRequest(_message.Message):
     def __init__(self, joints: _Optional[_Iterable[_Union[JointTarget, _Mapping]]] = ..., source: _Optional[str] = ...) -> None: ...
 
 class SurfaceCommand(_message.Message):
-    __slots__ = ("timestamp", "aileron", "elevator", "rudder", "throttle", "flap", "brake")
+    __slots__ = ("timestamp", "aileron", "elevator", "rudder", "throttle", "flap", "brake", "brake_difference")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     AILERON_FIELD_NUMBER: _ClassVar[int]
     ELEVATOR_FIELD_NUMBER: _ClassVar[int]
@@ -59,6 +59,7 @@ class SurfaceCommand(_message.Message):
     THROTTLE_FIELD_NUMBER: _ClassVar[int]
     FLAP_FIELD_NUMBER: _ClassVar[int]
     BRAKE_FIELD_NUMBER: _ClassVar[int]
+    BRAKE_DIFFERENCE_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     aileron: float
     elevator: float
@@ -66,7 +67,8 @@ class SurfaceCommand(_message.Message):
     throttle: float
     flap: float
     brake: float
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., aileron: _Optional[float] = ..., elevator: _Optional[float] = ..., rudder: _Optional[float] = ..., throttle: _Optional[float] = ..., flap: _Optional[float] = ..., brake: _Optional[float] = ...) -> None: ...
+    brake_difference: float
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., aileron: _Optional[float] = ..., elevator: _Optional[float] = ..., rudder: _Optional[float] = ..., throttle: _Optional[float] = ..., flap: _Optional[float] = ..., brake: _Optional[float] = ..., brake_difference: _Optional[float] = ...) -> None: ...
 
 class GimbalCommand(_message.Message):
     __slots__ = ("timestamp", "pan", "tilt", "mode")

@@ -1,10 +1,13 @@
 """Servos: a rate limit, then a first-order lag."""
 
 import math
-from dataclasses import fields
+from dataclasses import replace
 
 from services.sim_air.engine.wiring import Controls
 from uvf.models.vehicle.air import AirBody, Lever, Surface
+
+SERVOS = ("aileron", "elevator", "rudder", "throttle", "flap", "brake")
+"""What one moves, in the order of Controls."""
 
 
 class Servo:
@@ -34,13 +37,14 @@ class Actuators:
 
     def __init__(self, start: Controls, body: AirBody) -> None:
         controls = body.controls
-        self._servos = [_servo(getattr(controls, field.name), field.name, getattr(start, field.name), body) for field in fields(Controls)]
+        self._servos = [_servo(getattr(controls, name), name, getattr(start, name), body) for name in SERVOS]
         self.position = start
 
     def step(self, command: Controls, dt: float) -> Controls:
         """Deflections of the surfaces [rad] and levers [0..1] after ``dt`` [s]."""
         commands = (command.aileron, command.elevator, command.rudder, command.throttle, command.flap, command.brake)
-        self.position = Controls(*(servo.step(wanted, dt) for servo, wanted in zip(self._servos, commands, strict=True)))
+        moved = Controls(*(servo.step(wanted, dt) for servo, wanted in zip(self._servos, commands, strict=True)))
+        self.position = replace(moved, brake_difference=command.brake_difference) if command.brake_difference else moved
         return self.position
 
 

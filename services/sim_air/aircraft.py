@@ -14,9 +14,11 @@ from services.sim_air.actuators import Actuators
 from services.sim_air.contact.crash import Resting, Wreck, crash_of
 from services.sim_air.engine.contacts import GroundTouch
 from services.sim_air.engine.engine_state import EngineState
-from services.sim_air.engine.states import Air, AircraftMotion, Runaway
+from services.sim_air.engine.states import Air, AircraftMotion, InitialState, Runaway
+from services.sim_air.engine.trim import TrimAttitude
 from services.sim_air.engine.wiring import Controls, JointAngle
 from services.sim_air.environment.wind import CALM, AirMass, AirMotion, AirRelativeState
+from services.sim_air.launcher import AircraftLauncher
 from services.sim_air.rangers import Rangers
 from services.sim_air.sensors import Gnss, Imu, PressureSensors
 from uvf.maths.rotations import Floats
@@ -59,6 +61,10 @@ class AircraftBody(Protocol):
         """Angles and speeds of the moving parts."""
         ...
 
+    def release(self, start: InitialState, lies: TrimAttitude, wind: Floats) -> None:
+        """Lets it go in flight: velocity over ground of ``start``, attitude, wind (3,) [m/s, world]."""
+        ...
+
     def touches(self) -> list[GroundTouch]:
         """Its points that touch the ground."""
         ...
@@ -96,6 +102,8 @@ class Aircraft:
         self.physics_steps = 0
         self.motion = body.motion()
         self.wreck: Wreck | None = None
+        self.launcher: AircraftLauncher | None = None
+        """What holds it until it flies."""
         self.ended = ""
         """Why it lies where it lies, until it is told."""
         self.imu: Imu | None = None
@@ -121,7 +129,7 @@ class Aircraft:
         self.body, self.trim, self.command = body, level, now
         self.actuators = Actuators(now, self.file.air)
         self.motion = body.motion()
-        self.wreck, self.ended = None, ""
+        self.wreck, self.launcher, self.ended = None, None, ""
 
     def wait_until(self, t: float) -> None:
         """Sets its time to ``t`` [s], at which it begins."""
@@ -140,7 +148,7 @@ class Aircraft:
 
     def take(self, command: SurfaceCommand) -> None:
         """Takes a surface command; one with a non-finite number is ignored, for the engine would not recover from it."""
-        s = (command.aileron, command.elevator, command.rudder, command.throttle, command.flap, command.brake)
+        s = (command.aileron, command.elevator, command.rudder, command.throttle, command.flap, command.brake, command.brake_difference)
         if all(map(math.isfinite, s)):
             self.command = Controls(*s)
 
@@ -152,14 +160,16 @@ class Aircraft:
         """Makes physics steps up to ``t`` [s]."""
         due = round(t / self.dt)
         while self.physics_steps < due:
-            if self.wreck is None:
-                self._step()
-            else:
+            if self.wreck is not None:
                 self.wreck.fall(self.dt)
+            elif self.launcher is not None:
+                self._wait_for(self.launcher)
+            else:
+                self._step()
             self.physics_steps += 1
             if self.charge is not None:
-                self.charge.draw(0.0 if self.wreck else self.body.motor_power, self.dt)
-        self.motion = self.wreck.motion if self.wreck else self.body.motion()
+                self.charge.draw(0.0 if self.wreck or self.launcher else self.body.motor_power, self.dt)
+        self.motion = self._motion()
 
     def blow(self, steady: Floats) -> None:
         """Puts it into another mean wind (3,) [m/s, world], without shear."""
@@ -169,6 +179,22 @@ class Aircraft:
         if self.air_mass.is_steady:
             self.wind = self.air_mass.mean(self.body.flight().height)
             self.body.set_wind(AirMotion(self.wind, CALM))
+
+    def _motion(self) -> AircraftMotion:
+        if self.wreck is not None:
+            return self.wreck.motion
+        return self.body.motion() if self.launcher is None else self.launcher.motion(self.wind)
+
+    def _wait_for(self, launcher: AircraftLauncher) -> None:
+        """Held, or pushed; its surfaces move. It is ready when the brakes are let go of: it is armed."""
+        self.actuators.step(self.command, self.dt)
+        if self.air_mass is not None and not self.air_mass.is_steady:
+            self.wind = self.air_mass.step(self.physics_steps * self.dt, self.dt, launcher.flight(self.wind)).velocity
+        released = launcher.step(self.command.brake == 0.0, self.dt)
+        if released is not None:
+            self.body.release(released.start, released.lies, self.wind)
+            self.body.command(self.actuators.position)
+            self.launcher = None
 
     def _step(self) -> None:
         if self.air_mass is not None and not self.air_mass.is_steady:
@@ -197,7 +223,9 @@ class Aircraft:
 
     def air(self) -> Air:
         """The air about the aircraft now."""
-        return self.wreck.air if self.wreck else self.body.air()
+        if self.wreck is not None:
+            return self.wreck.air
+        return self.body.air() if self.launcher is None else self.launcher.air(self.wind)
 
     def joints(self) -> list[JointAngle]:
         """Angles and speeds of the moving parts."""

@@ -16,6 +16,7 @@ from services.sim_air.engine.beginning import as_told, begun
 from services.sim_air.engine.wiring import Controls
 from services.sim_air.environment.ground import GroundSurface
 from services.sim_air.environment.wind import AirMass
+from services.sim_air.launcher import AircraftLauncher, standard_air
 from services.sim_air.rangers import Rangers
 from services.sim_air.sensors import Gnss, Imu, PressureSensors
 from services.sim_air.service import SimAir
@@ -172,6 +173,11 @@ def _aircraft(site: Scenario, land: Land, member: MissionVehicle, airframe: Airf
     aircraft.charge = Charge(body.battery, begin.charge) if body.battery is not None else None
     aircraft.begin = partial(_begin, site, land, member)
     aircraft.wind, aircraft.air_mass = air.mean(begin.z), air
+    if begin.launch is not None:
+        held = np.array((begin.x, begin.y, land.ground.top(begin.x, begin.y) + begin.launch.height))
+        aircraft.launcher = AircraftLauncher(begin.launch, held, begin.yaw, standard_air(tangent, held), site.rng(member.name, "launch"))
+        aircraft.wind = air.mean(begin.launch.height)
+        aircraft.fly_to(0.0)
     fitted = member.file.sensors
     if fitted.imu is not None:
         aircraft.imu = Imu(fitted.imu, np.array(site.world.magnetic_field), site.rng(member.name, "imu"))

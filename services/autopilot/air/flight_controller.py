@@ -64,7 +64,9 @@ class FlightController:
         if isinstance(asked, PathSetpoint):
             bank = self._steering.bank(asked.aim, now, params, dt)
             bank = bank if asked.bank_limit is None else clip(bank, asked.bank_limit)
-            asked = AltitudeAirspeedSetpoint(bank, asked.height, asked.climb, asked.airspeed, asked.throttle, asked.rudder)
+            asked = AltitudeAirspeedSetpoint(
+                bank, asked.height, asked.climb, asked.airspeed, asked.throttle, asked.rudder, asked.lowest_pitch
+            )
         asked = kept(asked, self._fence, now, params)
         if asked.height is not None and not now.height_known:
             asked = replace(asked, height=now.height)

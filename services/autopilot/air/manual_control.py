@@ -8,6 +8,7 @@ from schemas.messages import SurfaceCommand
 from services.autopilot.air.setpoints import ManualCommand
 from services.autopilot.multiplexing import Multiplexer, in_turn
 from uvf.control.commands import Surfaces
+from uvf.control.cycle import clip
 from uvf.runtime.messages.convert import seconds
 
 SOURCES = ("teleop", "mavlink", "client")
@@ -32,7 +33,7 @@ class ManualSources(Multiplexer):
         fresh: dict[str, ManualCommand] = {}
         for source, m in self._said.items():
             if -CLOCK_TOLERANCE <= t - seconds(m.timestamp) <= longest:
-                asked = Surfaces(m.aileron, m.elevator, m.rudder, m.throttle, m.flap, m.brake)
+                asked = Surfaces(m.aileron, m.elevator, m.rudder, m.throttle, m.flap, m.brake, m.brake_difference)
                 if all(map(math.isfinite, astuple(asked))):
                     fresh[source] = ManualCommand(source, _within(asked))
         return fresh.get(self.pick(fresh))
@@ -40,7 +41,8 @@ class ManualSources(Multiplexer):
 
 def _within(s: Surfaces) -> Surfaces:
     """Throttle and brake within 0..1, the flap not above its wing; how far a surface goes is the servos' own limit."""
-    return replace(s, throttle=min(max(s.throttle, 0.0), 1.0), flap=max(s.flap, 0.0), brake=min(max(s.brake, 0.0), 1.0))
+    throttle, brake = (min(max(lever, 0.0), 1.0) for lever in (s.throttle, s.brake))
+    return replace(s, throttle=throttle, flap=max(s.flap, 0.0), brake=brake, brake_difference=clip(s.brake_difference, 1.0))
 
 
 class ManualControlState:

@@ -1,5 +1,6 @@
 """What a mode asks for in a cycle, at one of three levels of control, and what it knows beside the estimate."""
 
+import math
 from dataclasses import dataclass
 
 from schemas.messages import FlightSetpoint
@@ -55,6 +56,7 @@ class PathSetpoint:
     bank_limit: float | None = None  # rad; None: the vehicle's
     throttle: float | None = None  # 0..1; None: by the airspeed
     rudder: float | None = None  # rad, beside the yaw damper; None: the side slip is taken out
+    lowest_pitch: float = -math.inf  # rad
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,13 +28,13 @@ STEEPEST = math.radians(45.0)  # of the wings or the nose while a wheel is on th
 def crash_of(touches: list[GroundTouch], motion: AircraftMotion, max_sink: float) -> str:
     """What touched the ground and how fast, when that was more than a landing; "" = no crash.
 
-    A part of the structure moving over the ground, a wheel sinking faster than ``max_sink`` [m/s], or wheels on the ground in an
-    attitude in which nobody lands.
+    A part of the structure moving over the ground, a wheel or skid sinking faster than ``max_sink`` [m/s], or an attitude on the ground in
+    which nobody lands.
     """
     speed = float(np.linalg.norm(motion.velocity))
     moving = speed + float(np.linalg.norm(motion.angular_velocity))  # of a point within a metre
     for touch in touches:
-        if not touch.is_wheel and speed > SCRAPE:
+        if not touch.carries and speed > SCRAPE:
             return f"{touch.name} touched the ground at {speed:.1f} m/s"
         if touch.speed > max_sink and moving > SCRAPE:  # in its first step the engine may tell of a wheel's speed that is none
             return f"{touch.name} hit the ground sinking at {touch.speed:.1f} m/s; it bears {max_sink:g} m/s"

@@ -58,12 +58,14 @@ class Airframe:
         """The engine anew: it keeps from one beginning to the next what was true before, and a number that is none for ever."""
         self._fdm = _load(self._folder, self._path, self._body)
         known = list(dict.fromkeys([*_catalogue(self._fdm), *_made_by_settings(self._fdm, self._body)]))
-        self._wiring = Wiring(self._fdm, known, self._body, FileLocation(str(self._folder / "vehicle.yaml"), ("air",)))
-        self._contacts = Contacts(self._fdm, known, self._path)
+        place = FileLocation(str(self._folder / "vehicle.yaml"), ("air",))
+        self._wiring = Wiring(self._fdm, known, self._body, place)
+        self._contacts = Contacts(self._fdm, known, self._path, self._body.skids, place.at("skids"))
         self._reach = float(np.linalg.norm(self._contacts.points(), axis=1).max(initial=0.0))
         self._gauges = Gauges(self._fdm, known, self._tangent)
         self._hold = Hold(self._fdm)
         self._controls = Controls()
+        self._stands: tuple[InitialState, TrimAttitude] | None = None  # how it was put on its wheels, until its first step
 
     def save(self) -> EngineState:
         """Its state, from which ``restored`` makes another one."""
@@ -120,7 +122,8 @@ class Airframe:
             raise BadInput(f"{self._path}: it does not come to rest on its wheels in {SETTLE:g} s; look at <ground_reactions>, physics_hz")
         motion = self.motion()
         roll, pitch, _ = rotations.to_euler(motion.world_from_body)
-        self._wait_in_the_wind(at_rest(place, float(motion.position[2])), TrimAttitude(roll, -pitch, 0.0, (0.0, 0.0, 0.0)), place.wind)
+        self._stands = at_rest(place, float(motion.position[2])), TrimAttitude(roll, -pitch, 0.0, (0.0, 0.0, 0.0))
+        self._wait_in_the_wind(*self._stands, place.wind)
 
     def _wait_in_the_wind(self, start: InitialState, lies: TrimAttitude, wind: Floats) -> None:
         """Functions of a model read ``aero/ci2vel`` of the step before; after a calm one that is the chord over no airspeed."""
@@ -131,6 +134,11 @@ class Airframe:
         for _ in range(steps):
             self._fdm.run()
         self.hold_still(False)
+
+    def release(self, start: InitialState, lies: TrimAttitude, wind: Floats) -> None:
+        """Lets the aircraft go in flight with ``start.velocity`` over ground and the attitude ``lies``, in a ``wind`` (3,) [m/s, world]."""
+        self._load()
+        self._wait_in_the_wind(start, lies, wind)
 
     def drop(self, place: InitialState, height: float) -> None:
         """Puts the aircraft level and at rest with its wheels ``height`` [m] above the ground, brakes on, motor off, in calm air."""
@@ -151,6 +159,15 @@ class Airframe:
             if quiet >= self._body.physics_hz:
                 return bool(motion.position[2] > self._ground.under(motion.position))
         return False
+
+    @property
+    def has_wheels(self) -> bool:
+        """Whether it has any wheel."""
+        return self._contacts.has_wheels
+
+    def contacts(self) -> dict[str, Floats]:
+        """Places (3,) [m] of all points that can touch the ground, unloaded, from the centre of gravity, body FLU, by name."""
+        return dict(zip(self._contacts.names, self._contacts.points(), strict=True))
 
     def touches(self) -> list[GroundTouch]:
         """Its points that touch the ground."""
@@ -219,7 +236,9 @@ class Airframe:
         blow(self._fdm, wind)
 
     def set_wind(self, air: AirMotion) -> None:
-        """Sets velocity and rotation of the air until the next call."""
+        """Sets velocity and rotation of the air until the next call. The first wind that blows on what stands has blown on it before."""
+        if self._stands is not None:
+            self._wait_in_the_wind(*self._stands, air.velocity)
         self.blow(air.velocity)
         for name, rate in zip(GUST_RATES, air.rates, strict=True):
             self._fdm[name] = rate
@@ -235,6 +254,7 @@ class Airframe:
 
     def step(self) -> None:
         """One physics step of 1 / physics_hz. Raises Runaway, after which the body can only begin anew."""
+        self._stands = None
         self._lay_terrain()
         try:
             self._fdm.run()

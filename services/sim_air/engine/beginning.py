@@ -22,17 +22,23 @@ class FlightStart:
     flight: InitialState
     standing: bool
     trim_speed: float
+    thrown: bool = False
 
 
 def as_told(begin: mission_file.StartPose, body: AirBody, air: AirMass, ground: float) -> FlightStart:
     """The beginning that a mission's start asks for: no height above the ``ground`` [m, world] means standing, no speed the trim speed."""
     position, standing = np.array((begin.x, begin.y, ground + begin.z)), begin.on_ground or begin.z == 0
     flight = InitialState(position, begin.yaw, begin.speed or body.trim_speed, air.mean(begin.z), begin.climb, begin.turn_rate)
-    return FlightStart(flight, standing, body.trim_speed)
+    return FlightStart(flight, standing, body.trim_speed, begin.launch is not None)
 
 
 def begun(airframe: Airframe, begin: FlightStart) -> tuple[Controls, Controls]:
-    """Puts the airframe there; returns its controls then, and those of level flight for when nobody steers. Raises BadInput."""
+    """Puts the airframe there; returns its controls then, and those of level flight for when nobody steers. Raises BadInput.
+
+    What is to be thrown is put nowhere before that.
+    """
+    if begin.thrown:
+        return Controls(brake=1.0), _level(airframe, begin)
     if begin.standing:
         level = _level(airframe, begin)
         airframe.stand(begin.flight)

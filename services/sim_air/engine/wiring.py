@@ -14,13 +14,14 @@ MIXTURE = re.compile(r"fcs/(mixture|advance)-cmd-norm(\[\d+\])?")
 """Rich and fine, so that engines run at the start."""
 IGNITION = {"propulsion/magneto_cmd": 3.0, "propulsion/starter_cmd": 1.0}
 """A second beginning of a piston engine does not turn them on by itself."""
+SIDES = {"fcs/left-brake-cmd-norm": "left_brake", "fcs/right-brake-cmd-norm": "right_brake"}
 STEERING = "fcs/steer-cmd-norm"
 """JSBSim turns a steerable wheel to the right at a positive command."""
 
 
 @dataclass(frozen=True)
 class Controls:
-    """Deflections [rad] with the signs of SurfaceCommand; throttle and brake 0..1."""
+    """Deflections [rad] with the signs of SurfaceCommand; throttle and brake 0..1, brake_difference -1..1."""
 
     aileron: float = 0.0
     elevator: float = 0.0
@@ -28,6 +29,17 @@ class Controls:
     throttle: float = 0.0
     flap: float = 0.0
     brake: float = 0.0
+    brake_difference: float = 0.0
+
+    @property
+    def left_brake(self) -> float:
+        """0..1."""
+        return min(max(self.brake + max(self.brake_difference, 0.0), 0.0), 1.0)
+
+    @property
+    def right_brake(self) -> float:
+        """0..1."""
+        return min(max(self.brake - min(self.brake_difference, 0.0), 0.0), 1.0)
 
 
 class JointAngle(NamedTuple):
@@ -85,7 +97,7 @@ class Wiring:
             targets = [target for target in self._known if THROTTLE.fullmatch(target)]
         else:
             targets = [target for target in body.controls.properties(name) if target in self._known]
-        return [(name, target, scale) for target in targets]
+        return [(SIDES.get(target, name), target, scale) for target in targets]
 
     def _there(self, name: str, place: FileLocation) -> str:
         plain = name.replace("[0]", "")

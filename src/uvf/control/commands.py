@@ -1,5 +1,6 @@
 """What the levels of control ask of each other, from guidance down to the servos."""
 
+import math
 from dataclasses import dataclass
 
 
@@ -13,6 +14,7 @@ class AltitudeAirspeedSetpoint:
     airspeed: float  # m/s
     throttle: float | None = None  # 0..1; None: by the airspeed
     rudder: float | None = None  # rad, beside the yaw damper; None: the side slip is taken out
+    lowest_pitch: float = -math.inf  # rad; the nose goes no lower, whatever the climb rate
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +30,7 @@ class AttitudeSetpoint:
 
 @dataclass(frozen=True, slots=True)
 class Surfaces:
-    """Surface deflections and flap [rad] with the signs of SurfaceCommand; throttle and brake 0..1."""
+    """Surface deflections and flap [rad] with the signs of SurfaceCommand; throttle and brake 0..1, brake_difference -1..1."""
 
     aileron: float
     elevator: float
@@ -36,3 +38,4 @@ class Surfaces:
     throttle: float
     flap: float = 0.0
     brake: float = 0.0
+    brake_difference: float = 0.0

@@ -78,8 +78,10 @@ class FlightControl:
 
 def on_final(params: AirParams) -> AirParams:
     """The parameters as they are flown on the last metres before touching down; ``altitude_p`` there is that of the flare."""
-    inner = {"pitch_time": params.final_pitch_time, "pitch_p": params.final_pitch_p, "pitch_i": params.final_pitch_i}
-    return msgspec.structs.replace(params, climb_p=params.final_climb_p, altitude_p=params.flare_p, **inner)
+    roll = {"roll_time": params.final_roll_time, "roll_p": params.final_roll_p, "roll_i": params.final_roll_i}
+    pitch = {"pitch_time": params.final_pitch_time, "pitch_p": params.final_pitch_p, "pitch_i": params.final_pitch_i}
+    path = {"course_p": params.final_course_p, "k_path": params.final_k_path, "climb_p": params.final_climb_p}
+    return msgspec.structs.replace(params, altitude_p=params.flare_p, **roll, **pitch, **path)
 
 
 def level_trim(params: AirParams) -> Surfaces:

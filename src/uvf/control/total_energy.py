@@ -77,12 +77,13 @@ class EnergyLoops:
         asked = self._asked(cycle, wanted)
         self.lacking = asked.reached - cycle.now.climb
         pitch, error = self._pitch(cycle, asked.reached), self.lacking / cycle.speed
-        if (error > 0 and pitch < cycle.highest_pitch) or (error < 0 and pitch > -cycle.params.pitch_limit):
+        lowest = max(-cycle.params.pitch_limit, wanted.lowest_pitch)
+        if (error > 0 and pitch < cycle.highest_pitch) or (error < 0 and pitch > lowest):
             self._trim.step(cycle.params.climb_i * error, cycle.dt)
         level = level_throttle(cycle, self._airspeed(cycle, wanted))
         setting = level + _slope(cycle) * (asked.climb + asked.faster - self._power.unexplained)
         self._throttle = min(max(setting, 1 - _room(cycle)), 1.0) if wanted.throttle is None else wanted.throttle
-        return max(min(pitch, cycle.highest_pitch), -cycle.params.pitch_limit), self._throttle
+        return max(min(pitch, cycle.highest_pitch), lowest), self._throttle
 
     def _asked(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> Power:
         """Within what throttle can reach: full, the airspeed comes before the path; idling or given, the highest airspeed does.

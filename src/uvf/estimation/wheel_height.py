@@ -33,3 +33,11 @@ class WheelHeight:
             self._drift = min(max(self._drift + POLE**2 * error * dt, -MOST_DRIFT), MOST_DRIFT)
         self.height = estimated + self._off
         self.climb = now.climb + self._drift
+
+    def touched(self, now: Estimate, params: AirParams) -> None:
+        """The wheels are on the strip now, whatever was estimated."""
+        self._off, self._drift = params.gear_height + self._ground - now.height, 0.0
+
+    def over_touch(self, now: Estimate, params: AirParams) -> float:
+        """Estimated height [m] of the wheels over where they touched."""
+        return now.height - params.gear_height - self._ground + self._off

@@ -94,7 +94,7 @@ class Strip:
         motion, touches = self.airframe.motion(), self.airframe.touches()
         roll, pitch, yaw = rotations.to_euler(motion.world_from_body)
         (x, y, z), (p, q, r) = motion.position.tolist(), motion.angular_velocity.tolist()
-        wheels, structure = (tuple(touch.name for touch in touches if touch.is_wheel is kind) for kind in (True, False))
+        wheels, structure = (tuple(touch.name for touch in touches if touch.carries is kind) for kind in (True, False))
         seen = (x, -y, z - self._standing_height, motion.airspeed, float(roll), -float(pitch), -float(yaw), -float(motion.velocity[2]))
         return Sight(t, *seen, (p, -q, -r), wheels, structure)
 

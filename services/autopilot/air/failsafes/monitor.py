@@ -134,6 +134,7 @@ class FailsafeMonitor:
             stopped_for=stopped_for,
             roll=now.roll,
             pitch=now.pitch,
+            lands=self._mode_manager.landing is not None,
             wind=math.hypot(now.wind_north, now.wind_east),
         )
 

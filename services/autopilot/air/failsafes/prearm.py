@@ -13,7 +13,7 @@ ACCURACY = 6.0  # m, of a fix
 STALE_FIX = 1.0  # s
 STILL = 2.0  # m/s over ground
 TILT = 0.5  # rad, that no landing gear stands at
-NO_WIND = 0.6  # of min_airspeed: more is no wind in which one takes off, but a fault
+NO_WIND = 0.8  # of min_airspeed: more is no wind in which one takes off, but a fault
 EARTH_FIELD = (15e-6, 75e-6)  # T
 
 

@@ -37,6 +37,7 @@ class FailsafeInputs:
     stopped_for: float = 0.0  # s
     roll: float = 0.0  # rad
     pitch: float = 0.0  # rad
+    lands: bool = False  # it is landing already
     wind: float = 0.0  # m/s
 
 
@@ -219,7 +220,7 @@ AIR_RULES: tuple[FailsafeRule[FailsafeInputs], ...] = (
         raised_text="wind too strong",
         cleared_text="wind has slackened",
         detail=lambda k: f"{k.wind:.0f} m/s",
-        action=_chosen("wind_action"),
+        action=lambda k: FailsafeAction.WARN if k.lands else ACTIONS[k.params.wind_action],
         after=lambda k: 10.0,
         clear_delay=30.0,
         parameters=("wind_max", "wind_action"),

@@ -54,7 +54,7 @@ class DescendMode(FlightPhase):
         """Setpoint of this cycle of ``dt`` [s]: down on a circle, the last part into the wind, then rolling out."""
         self._since += dt
         if self._stage is DescendStage.ROLL:
-            return self._roll(now, dt)
+            return self._roll(now, params, dt)
         height = self._height(now, params)
         if self._stage is DescendStage.CIRCLE and height < TURNS_BELOW:
             self._stage, self._heading = DescendStage.UPWIND, upwind(now)
@@ -88,14 +88,14 @@ class DescendMode(FlightPhase):
         self._felt = self._felt + dt if near else 0.0
         return self._felt > limit
 
-    def _roll(self, now: Estimate, dt: float) -> Setpoint:
+    def _roll(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         """Straight on with brakes; the speed over ground is only reckoned, so at last it is taken to stand."""
         assert self._gyros is not None
         level = self._gyros.step(now, dt)
         self._felt = self._felt + dt if not self._senses.airborne else 0.0
         if self._felt > STANDS or self._since > LONGEST:
             self.ended, self.disarms = "down", True
-        return Setpoint(rolling(level, rudder_along(level, self._heading, 0.0), 0.0, BRAKE if self._since > BRAKES_AFTER else 0.0))
+        return Setpoint(rolling(level, params, rudder_along(level, self._heading, 0.0), 0.0, BRAKE if self._since > BRAKES_AFTER else 0.0))
 
 
 def upwind(now: Estimate) -> float:

@@ -10,7 +10,7 @@ from enum import Enum, auto
 
 from services.autopilot.air.setpoints import FlightContext, FlightPhase, PathSetpoint, Setpoint
 from uvf.control.commands import AttitudeSetpoint
-from uvf.control.cycle import clip
+from uvf.control.cycle import Cycle, clip
 from uvf.control.ground_roll import Gyros, held, rolling, rudder_along
 from uvf.control.total_energy import climb_at
 from uvf.estimation.state import Estimate
@@ -36,15 +36,18 @@ TOUCH_SINK = 0.4  # m/s
 TOUCH_SPEED, SLOWS_BELOW = 0.96, 3.0  # of min_airspeed; m
 DECRAB_BELOW = 0.7  # m
 CRAB_LEFT = 0.1  # rad, that the wheels take
-LOW, LOW_BANK = 3.0, 0.17  # m, rad
+LOW, LOW_BANK, TOUCH_BANK = 3.0, 0.17, 0.06  # m, rad: the wing tips come near to the ground
 MOST_SINK, SINK_PER_M = 0.6, 0.4  # m/s, 1/s: to come down onto the path of the flare, by the height
+NOSE_UP_BELOW, NOSE_GIVES = 1.0, 0.04  # m, rad
+LATE_PER_M, MOST_LATE = 0.04, 0.4  # 1/s, m/s
 LIFTS_BELOW = 8.0  # m; from here on the flaps make lift at once
 LIFT_P, LIFT_A = 4.0, 1.0  # 1/s, per climb rate that is wanting; per lift that is not felt
-TOUCHED, STUCK = 0.12, 0.15  # m; m/s less sink than asked for
+TOUCHED, STUCK, STILL = 0.12, 0.15, 0.2  # m; m/s less sink than asked for; m/s
+FEELS_BELOW = 0.7  # m; without a range finder it goes on sinking from here on, wherever the ground is
 IDLES_BELOW = 0.5  # m
 BOUNCED, FLIES = 0.3, 0.75  # m over the ground, of min_airspeed: it has bounced, or a gust has lifted it, and it flares once more
 LOOSE = 0.5  # of min_airspeed, below which surfaces hold no attitude
-TOUCH_TIME, STUCK_TIME = 0.08, 1.0  # s
+TOUCH_TIME, STUCK_TIME = 0.08, 0.5  # s
 LOWERS = 1.0  # s after touching, in which the nose comes down: let go of at once, it falls, and a bounce ends on it
 BRAKES_AFTER, BRAKE = 0.8, 0.6  # s
 STOPPED, STANDS = 0.7, 1.5  # m/s, s
@@ -163,10 +166,13 @@ class LandingMode(FlightPhase):
             self.around(why)
         climb = -slope * now.ground_speed + (params.flare_p if flares else params.altitude_p) * (wanted - wheels.height)
         if flares:
-            climb = max(climb, -MOST_SINK - SINK_PER_M * max(wheels.height, 0.0))
+            climb = max(climb, -MOST_SINK - late(distance) - SINK_PER_M * max(wheels.height, 0.0))
+            if self._senses.clearance is None and wheels.height < FEELS_BELOW:
+                climb = min(climb, -TOUCH_SINK)
         climb += now.climb - wheels.climb  # as the estimate has it
         if flares and self._has_touched(now, climb, dt):
-            self._gyros, self._touched_at = Gyros(now), now.pitch
+            self._gyros, self._touched_at = Gyros(now), max(now.pitch, nose_up(now, params))
+            wheels.touched(now, params)
             self._to(LandingStage.ROLL)
         lift = self._lift(now, climb) if wheels.height < LIFTS_BELOW else 0.0
         return Setpoint(self._down(now, params, climb, fast), params.land_flap, lift=lift, firm=True)
@@ -177,7 +183,10 @@ class LandingMode(FlightPhase):
         aim = line_reference(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
         rudder = self._decrab(now) if height < DECRAB_BELOW else None
         throttle = touch_throttle(now, params, climb, airspeed, height) if height < IDLES_BELOW else None
-        return PathSetpoint(aim, None, climb, airspeed, LOW_BANK if height < LOW else None, throttle, rudder)
+        bank = TOUCH_BANK + (LOW_BANK - TOUCH_BANK) * max(height, 0.0) / LOW if height < LOW else None
+        faster = 0.0 if params.gear == "tail_wheel" else late(self.lane.locate(now)[0])  # its propeller is near to the ground
+        lowest = nose_up(now, params, faster) if height < NOSE_UP_BELOW else -math.inf
+        return PathSetpoint(aim, None, climb, airspeed, bank, throttle, rudder, lowest)
 
     def _lift(self, now: Estimate, climb: float) -> float:
         """m/s^2 that are wanting: by the climb, and by the lift that is felt, which tells of a gust before it has moved anything."""
@@ -206,9 +215,9 @@ class LandingMode(FlightPhase):
         return rudder_along(now, self.lane.course + clip(off, CRAB_LEFT), 0.0)
 
     def _has_touched(self, now: Estimate, climb: float, dt: float) -> bool:
-        """Seen by the range finder; or it sinks no more although it should."""
-        seen = self._senses.clearance
-        near, limit = (seen < TOUCHED, TOUCH_TIME) if seen is not None else (now.climb > climb + STUCK, STUCK_TIME)
+        """Seen by the range finder; or it neither sinks, although it should, nor moves up and down with the air."""
+        seen, stuck = self._senses.clearance, now.climb > climb + STUCK and abs(now.climb) < STILL
+        near, limit = (seen < TOUCHED, TOUCH_TIME) if seen is not None else (stuck, STUCK_TIME)
         self._still = self._still + dt if near else 0.0
         return self._still > limit
 
@@ -220,13 +229,14 @@ class LandingMode(FlightPhase):
         if self._still > STANDS:
             self.ended, self.disarms = "landed", True
         rudder = rudder_along(level, self.lane.course, right)
-        seen = self._senses.clearance
-        if seen is not None and seen > BOUNCED and now.airspeed > FLIES * params.min_airspeed:
+        lifted = self._senses.clearance
+        lifted = self._wheels.over_touch(now, params) if lifted is None else lifted
+        if lifted > BOUNCED and now.airspeed > FLIES * params.min_airspeed:
             self._to(LandingStage.FINAL)
-        if self._since < LOWERS and now.airspeed > LOOSE * params.min_airspeed:
+        if params.gear != "tail_wheel" and self._since < LOWERS and now.airspeed > LOOSE * params.min_airspeed:
             nose = AttitudeSetpoint(0.0, self._touched_at * (1 - self._since / LOWERS), 0.0, rudder)
             return Setpoint(held(now, level, nose), firm=True)
-        return Setpoint(rolling(level, rudder, 0.0, BRAKE if self._since > BRAKES_AFTER else 0.0))
+        return Setpoint(rolling(level, params, rudder, 0.0, BRAKE if self._since > BRAKES_AFTER else 0.0))
 
     def _go_around(self, now: Estimate, params: AirParams) -> Setpoint:
         circle = self._circle.centre.height
@@ -250,6 +260,20 @@ def flare(distance: float, ground_speed: float, slope: float) -> tuple[float, fl
         return touching * begins + bend * begins**2 + slope * (distance - begins), slope, False
     on = max(distance, 0.0)
     return touching * distance + bend * on**2, touching + 2 * bend * on, True
+
+
+def late(distance: float) -> float:
+    """m/s of sink beyond the usual, when gusts have carried it on, ``distance`` [m] before the point to touch at, or negative: behind."""
+    return min(LATE_PER_M * max(-distance, 0.0), MOST_LATE)
+
+
+def nose_up(now: Estimate, params: AirParams, faster: float = 0.0) -> float:
+    """Pitch [rad] below which the nose is not lowered over the strip, so that no wheel in front of the main ones touches first.
+
+    It is that of a little more sink than when it touches, and of as much more as is asked for: ``faster`` [m/s].
+    """
+    cycle = Cycle(now, params, 0.0)
+    return cycle.alpha_with(1.0) - params.flap_alpha * params.land_flap - (TOUCH_SINK + faster) / cycle.speed - NOSE_GIVES
 
 
 def touch_throttle(now: Estimate, params: AirParams, climb: float, airspeed: float, height: float) -> float:

@@ -5,16 +5,19 @@ from enum import Enum, auto
 
 from services.autopilot.air.setpoints import FlightContext, FlightPhase, PathSetpoint, Setpoint
 from uvf.control.commands import AttitudeSetpoint, Surfaces
+from uvf.control.cycle import clip
 from uvf.control.ground_roll import Gyros, held, rolling, rudder_along
 from uvf.control.total_energy import climb_at
 from uvf.estimation.state import Estimate
 from uvf.guidance.vector_field import Point, from_line, line_reference
+from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
 ROTATION = 0.9  # of min_airspeed
-OPENING = 1.0  # s, in which the throttle opens
+OPENING = {"nose_wheel": 1.0, "tail_wheel": 2.5, "belly": 1.0}  # s, in which the throttle opens; slowly while only a tail wheel steers
 LIFTED = 1.5  # m
-STRAIGHT = 8.0  # m; below it the wings stay level
+STRAIGHT = 8.0  # m; below it the wings stay nearly level
+LOW_BANK, BACK_PER_M, MOST_BACK = 0.15, 0.03, 0.3  # rad; rad of course per m aside, rad
 BANKED = 0.4  # rad, most bank above that
 LONGEST = 30.0  # s, of the roll
 SLUGGISH = 4.0, 3.0  # s, m/s over ground: slower than that after so long it is not going to fly
@@ -62,7 +65,7 @@ class TakeoffMode(FlightPhase):
             return self._ready(now, params, dt)
         if self._stage is TakeoffStage.ROLL:
             return self._roll(now, level, params)
-        return self._reject(now, level) if self._stage is TakeoffStage.REJECTED else self._climb(now, level, params)
+        return self._reject(now, level, params) if self._stage is TakeoffStage.REJECTED else self._climb(now, level, params)
 
     def _to(self, stage: TakeoffStage) -> None:
         self._stage, self._since = stage, 0.0
@@ -86,10 +89,10 @@ class TakeoffMode(FlightPhase):
             self._to(TakeoffStage.REJECTED)
         if self._rise(now) > LIFTED:
             self._to(TakeoffStage.CLIMB)
-        rudder, throttle = rudder_along(level, self._course, right), min(self._since / OPENING, 1.0)
-        if now.airspeed < ROTATION * params.min_airspeed:
-            return Setpoint(rolling(level, rudder, throttle))
-        return Setpoint(held(now, level, AttitudeSetpoint(0.0, params.takeoff_pitch, throttle, rudder)))
+        rudder, throttle = rudder_along(level, self._course, right), params.takeoff_throttle * min(self._since / OPENING[params.gear], 1.0)
+        if now.airspeed > ROTATION * params.min_airspeed:
+            return Setpoint(held(now, level, AttitudeSetpoint(0.0, params.takeoff_pitch, throttle, rudder)))
+        return Setpoint(rolling(level, params, rudder, throttle))
 
     def _fault(self, now: Estimate, params: AirParams, right: float) -> str:
         """Why this is no take-off; empty while it is one. Once it could fly, it does."""
@@ -102,20 +105,28 @@ class TakeoffMode(FlightPhase):
             return "it left the line of the strip"
         return "too slow after half of the strip" if run > self._room / 2 else ""
 
-    def _reject(self, now: Estimate, level: Estimate) -> Setpoint:
+    def _reject(self, now: Estimate, level: Estimate, params: AirParams) -> Setpoint:
         if now.ground_speed < STOPPED:
             self.ended, self.disarms = f"take-off rejected: {self._why}", True
         right = self._right(now)
-        return Setpoint(rolling(level, rudder_along(level, self._course, right), 0.0, BRAKE))
+        return Setpoint(rolling(level, params, rudder_along(level, self._course, right), 0.0, BRAKE))
 
     def _climb(self, now: Estimate, level: Estimate, params: AirParams) -> Setpoint:
         if now.height >= self.height:
             self.ended = "take-off complete"
         if self._rise(now) < STRAIGHT or now.airspeed < ROTATION * params.min_airspeed:
             spare = (now.airspeed - params.min_airspeed) / params.min_airspeed
-            return Setpoint(held(now, level, AttitudeSetpoint(0.0, params.takeoff_pitch * min(max(0.75 + 2.5 * spare, 0.3), 1.0), 1.0)))
+            pitch = params.takeoff_pitch * min(max(0.75 + 2.5 * spare, 0.3), 1.0)
+            return Setpoint(held(now, level, AttitudeSetpoint(self._straight(now, params), pitch, params.takeoff_throttle)))
         aim = line_reference(self._along, self._origin, (now.north, now.east), params)
-        return Setpoint(PathSetpoint(aim, None, climb_at(now, params), params.trim_airspeed, bank_limit=BANKED, throttle=1.0))
+        climb, throttle = climb_at(now, params), params.takeoff_throttle
+        return Setpoint(PathSetpoint(aim, None, climb, params.trim_airspeed, bank_limit=BANKED, throttle=throttle))
+
+    def _straight(self, now: Estimate, params: AirParams) -> float:
+        """Bank [rad], a small one, that keeps it over the line of the take-off."""
+        back = clip(BACK_PER_M * self._right(now), MOST_BACK)
+        off = math.remainder(self._course - back - now.course, math.tau)
+        return clip(params.course_p * now.ground_speed / GRAVITY * off, LOW_BANK)
 
     @property
     def _along(self) -> Point:

@@ -71,9 +71,8 @@ def body_frame(state: NavState, vehicle: str) -> FrameTransform:
 def surfaces(t: float, s: Surfaces, armed: bool) -> SurfaceCommand:
     """The command to the servos [rad; throttle 0 to 1], stamped ``t`` [s]; disarmed, the motor stays off."""
     throttle = s.throttle if armed else 0.0
-    return SurfaceCommand(
-        timestamp=stamp(t), aileron=s.aileron, elevator=s.elevator, rudder=s.rudder, throttle=throttle, flap=s.flap, brake=s.brake
-    )
+    levers = {"throttle": throttle, "flap": s.flap, "brake": s.brake, "brake_difference": s.brake_difference}
+    return SurfaceCommand(timestamp=stamp(t), aileron=s.aileron, elevator=s.elevator, rudder=s.rudder, **levers)
 
 
 def status(t: float, active: ActiveMode, now: Estimate, flown: ControlOutput) -> VehicleStatus:

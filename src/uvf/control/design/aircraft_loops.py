@@ -68,8 +68,11 @@ def loops(flight: FlightCondition, delays: ActuatorDelays, params: AirParams, po
     for flow, opened in ((lateral, lateral_loops.LOOPS), (longitudinal, longitudinal_loops.LOOPS)):
         yield from _of(flow, opened, flight.airspeed, powered)
     if flight.airspeed < FINAL_UP_TO * params.trim_airspeed:
-        final = longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, on_final(params), given_throttle=not powered)
-        yield from _of(final, longitudinal_loops.ON_FINAL, flight.airspeed, powered)
+        final = on_final(params)
+        lateral = lateral_loops.lateral_flow(OMEGA, flight, delays, final)
+        longitudinal = longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, final, given_throttle=not powered)
+        for flow, opened in ((lateral, lateral_loops.ON_FINAL), (longitudinal, longitudinal_loops.ON_FINAL)):
+            yield from _of(flow, opened, flight.airspeed, powered)
 
 
 def _of(flow: SignalFlow, opened: dict[str, str], airspeed: float, powered: bool) -> Iterator[Loop]:

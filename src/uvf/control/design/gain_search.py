@@ -48,13 +48,11 @@ LONGITUDINAL = {
     "airspeed_p": (0.2, 2.0),
     "power_pole": (0.4, 5.0),
 }
-FINAL = {
-    "final_climb_p": (0.05, 6.0),
-    "final_pitch_time": (0.1, 2.0),
-    "final_pitch_p": (1e-4, 2.0),
-    "final_pitch_i": (1e-3, 2.0),
-    "flare_p": (0.2, 2.5),
-}
+FINAL_LATERAL = ("roll_time", "roll_p", "roll_i", "course_p", "k_path")
+FINAL_LONGITUDINAL = ("climb_p", "pitch_time", "pitch_p", "pitch_i")
+"""Those that the final approach has of its own, called ``final_*``; and ``flare_p``."""
+FLARE = {"flare_p": (0.2, 2.5)}
+FINAL = (*(f"final_{name}" for name in (*FINAL_LATERAL, *FINAL_LONGITUDINAL)), *FLARE)
 """Gains that are searched for, within these limits in their own units."""
 TRIALS = (600, 500, 400)  # evaluations of each simplex; the last with what is hardest
 SOFTER = (1.0, 1.5, 2.2, 3.3, 5.0, 7.5)  # times the time constants to begin with, until the loops are stable
@@ -63,9 +61,10 @@ STIFF = {"roll_p": 0.15, "roll_i": 0.3, "pitch_p": 0.3, "pitch_i": 1.0}
 STEEP = 0.3  # 1/s, with which a path is approached at least
 SLOWEST, SLOWER = 0.5, 4.0  # s, and of the delays: the longest time constant of an attitude
 FLOOR = (2.5, 15.0, 4.0)  # dB, deg, sensitivity: what is left when the aircraft is not what its model says
-HARDEST = 4  # of such aircraft, that are designed for
+HARDEST, ROUNDS = 4, 3  # of such aircraft that are designed for; how often others are found that are harder by then
 ASIDE, ABOVE, FASTER = 0.5, 0.5, 0.7  # m, m, m/s: errors in turbulence, each worth as much as the surfaces' whole budget
 FINAL_SHARE, FINAL_WAY = 0.3, 3.0  # of ABOVE, of PITCH_WAY: budgets near the ground
+LEVEL = 0.05  # rad of bank in turbulence, worth a whole budget there
 FLARES = 1.5  # times altitude_p, to begin with
 ROLL_WAY, PITCH_WAY, THROTTLE_WAY = 5.0, 3.0, 0.3  # deg/s of ailerons and rudder, of the elevator; 1/s: budgets of their way there
 LARGEST = 4  # power of a share: what lies well within its budget is not worth much
@@ -114,7 +113,7 @@ class RequiredMargins:
             found = margins(OMEGA, flow.loop(at))
             lack += 10 * max(found.peak - self.peak, 0.0) ** 2
             lack += 0.0 if np.isnan(found.gain) else max(self.gain - abs(found.gain_db), 0.0) ** 2
-            lack += 0.0 if np.isnan(found.phase) else max(self.phase - np.degrees(abs(found.phase)), 0.0) ** 2 / 100
+            lack += 0.0 if np.isnan(found.phase) else max(self.phase - np.degrees(abs(found.phase)), 0.0) ** 2 / 25
         return lack
 
 
@@ -137,7 +136,10 @@ def designed(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
     """
     for axis in _axes(aircraft, params, firmness):
         params = _designed(aircraft, params, axis)
-    return _designed(aircraft, as_in_cruise(params), _final(aircraft, params, firmness))
+    params = as_in_cruise(params)
+    for axis in _final(aircraft, params, firmness):
+        params = _designed(aircraft, params, axis)
+    return params
 
 
 def _designed(aircraft: AircraftLoops, params: AirParams, axis: Axis) -> AirParams:
@@ -145,17 +147,20 @@ def _designed(aircraft: AircraftLoops, params: AirParams, axis: Axis) -> AirPara
     cruise = min(range(len(walls)), key=lambda i: abs(walls[i].flight.airspeed - params.trim_airspeed))
     for trials in TRIALS[:-1]:
         params = _searched(params, axis, walls, cruise, trials)
-    worst = sorted(
-        (RequiredMargins(*spread, *FLOOR) for spread in aircraft.spread() if spread[0].airspeed < axis.fastest),
-        key=lambda wall: -_lacking(wall, axis, params),
-    )
-    return _searched(params, axis, [*walls, *worst[:HARDEST]], cruise, TRIALS[-1])
+    spread = [RequiredMargins(*off, *FLOOR) for off in aircraft.spread() if off[0].airspeed < axis.fastest]
+    for _ in range(ROUNDS):
+        spread.sort(key=lambda wall: -_lacking(wall, axis, params))
+        walls, spread = walls + spread[:HARDEST], spread[HARDEST:]
+        params = _searched(params, axis, walls, cruise, TRIALS[-1])
+        if not any(_lacking(wall, axis, params) for wall in spread):
+            break
+    return params
 
 
 def as_in_cruise(params: AirParams) -> AirParams:
     """With the gains of the final approach from those of cruise."""
-    flare = min(max(FLARES * params.altitude_p, FINAL["flare_p"][0]), FINAL["flare_p"][1])
-    same = {f"final_{name}": getattr(params, name) for name in ("climb_p", "pitch_time", "pitch_p", "pitch_i")}
+    flare = min(max(FLARES * params.altitude_p, FLARE["flare_p"][0]), FLARE["flare_p"][1])
+    same = {f"final_{name}": getattr(params, name) for name in (*FINAL_LATERAL, *FINAL_LONGITUDINAL)}
     return msgspec.structs.replace(params, flare_p=flare, **same)
 
 
@@ -192,8 +197,7 @@ def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
     air = _air(aircraft, params)
 
     def wanted(flow: SignalFlow) -> float:
-        error = np.hypot(air.rms(flow, "aside", "vpr"), disturbed(flow, "aside", "bank", *BANK_OFF))
-        way = WAY * sum(air.rms(flow, surface, "vpr", rate=True) for surface in ("servo_a", "servo_r"))
+        error, way = _aside(air, flow)
         return _within(firmness * error / ASIDE, way / ROLL_WAY)
 
     gains = LATERAL | _inner("roll", aircraft.delays.total("aileron"), params.roll_ff, LATERAL)
@@ -218,26 +222,44 @@ def _longitudinal(aircraft: AircraftLoops, params: AirParams, firmness: float = 
     return Axis(gains, loops, partial(longitudinal_loops.longitudinal_flow, OMEGA, given_throttle=not aircraft.powered), wanted)
 
 
+def _aside(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
+    """Error beside the path [m] in gusts and after disturbances of bank, and the way of ailerons and rudder [deg/s]."""
+    error = float(np.hypot(air.rms(flow, "aside", "vpr"), disturbed(flow, "aside", "bank", *BANK_OFF)))
+    return error, WAY * sum(air.rms(flow, surface, "vpr", rate=True) for surface in ("servo_a", "servo_r"))
+
+
 def _above(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
     """Error of height [m] in gusts and after disturbances of pitch, and the way of the elevator [deg/s]."""
     error = float(np.hypot(air.rms(flow, "h", "uwq"), disturbed(flow, "h", "pitch", *PITCH_OFF)))
     return error, WAY * air.rms(flow, "servo_e", "uwq", rate=True)
 
 
-def _final(aircraft: AircraftLoops, params: AirParams, firmness: float) -> Axis:
-    """Climb and pitch near the ground, where comfort does not count: as stiff as the margins allow."""
+def _final(aircraft: AircraftLoops, params: AirParams, firmness: float) -> tuple[Axis, Axis]:
+    """Near the ground, where comfort does not count: as stiff as the margins allow."""
     air = _air(aircraft, params)
-    first = _longitudinal(aircraft, params)
+    roll, pitch = _axes(aircraft, params)
 
-    def wanted(flow: SignalFlow) -> float:
+    def beside(flow: SignalFlow) -> float:
+        error, way = _aside(air, flow)
+        level = air.rms(flow, "phi", "vpr") / LEVEL
+        return _within(firmness * error / (FINAL_SHARE * ASIDE), firmness * level, way / (FINAL_WAY * ROLL_WAY))
+
+    def above(flow: SignalFlow) -> float:
         error, way = _above(air, flow)
         return _within(firmness * error / (FINAL_SHARE * ABOVE), way / (FINAL_WAY * PITCH_WAY))
 
-    def build(flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
-        return first.build(flight, delays, on_final(params))
+    lateral = {f"final_{name}": roll.gains[name] for name in FINAL_LATERAL}
+    longitudinal = {f"final_{name}": pitch.gains[name] for name in FINAL_LONGITUDINAL} | FLARE
+    return _as_final(roll, lateral, beside, params), _as_final(pitch, longitudinal, above, params)
 
-    gains = FINAL | {f"final_{name}": first.gains[name] for name in ("pitch_time", "pitch_p", "pitch_i")}
-    return Axis(gains, first.opened, build, wanted, FINAL_UP_TO * params.trim_airspeed)
+
+def _as_final(axis: Axis, gains: Mapping[str, Limits], wanted: Callable[[SignalFlow], float], params: AirParams) -> Axis:
+    """The axis of cruise with the ``gains`` that are its own on the final approach."""
+
+    def build(flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
+        return axis.build(flight, delays, on_final(params))
+
+    return Axis(gains, axis.opened, build, wanted, FINAL_UP_TO * params.trim_airspeed)
 
 
 def _inner(axis: str, delay: float, ahead: float, gains: Mapping[str, Limits]) -> dict[str, Limits]:

@@ -16,6 +16,7 @@ SIGNALS = (
 INPUTS = ("gust_v", "gust_p", "gust_r")
 IN_AIR = {"v": ("v",), "p": ("v", "p", "r"), "r": ("v", "p", "r")}
 LOOPS = {"path": "bank", "roll": "aileron_asked", "yaw": "rudder_asked"}
+ON_FINAL = {"final path": "bank", "final roll": "aileron_asked"}
 """Where each is opened."""
 
 

@@ -17,6 +17,8 @@ ABOVE_ZERO = (
 )
 ROUGH = 0.5  # share by which published inertias miss what is possible; the engine flies them
 MASS = {"LBS": 0.45359237, "KG": 1.0}  # kg
+CASTER = 360.0  # deg, of a wheel that turns freely
+CASTER = 360.0  # deg, of a wheel that turns freely
 FT2 = 0.3048**2  # m^2
 SLUG_FT2 = 1.3558179619  # kg m^2
 
@@ -88,6 +90,14 @@ def contact_names(path: Path, number: int) -> list[str]:
     """Names of the ``number`` contacts in the order of the file; numbered where the model has them in a file of its own."""
     named = [tag.get("name", "").strip() for tag in read(path).findall("ground_reactions/contact")]
     return [name or f"contact {i}" for i, name in enumerate(named)] if len(named) == number else [f"contact {i}" for i in range(number)]
+
+
+def steers_by_brakes(path: Path) -> bool:
+    """Whether no wheel of it follows the rudder, and it has brakes on the left and on the right: it is steered by them."""
+    wheels = [contact for contact in read(path).findall("ground_reactions/contact") if contact.get("type") == "BOGEY"]
+    steered = [abs(number(wheel.findtext("max_steer", "0").strip())) for wheel in wheels]
+    groups = {wheel.findtext("brake_group", "").strip() for wheel in wheels}
+    return bool(wheels) and not any(0 < angle < CASTER for angle in steered) and {"LEFT", "RIGHT"} <= groups
 
 
 def weight_and_wing(path: Path) -> tuple[float, float]:

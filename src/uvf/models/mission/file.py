@@ -12,6 +12,7 @@ from uvf.models.mission.faults import Fault, check_faults
 from uvf.models.mission.fence import FenceFile, zones_of
 from uvf.models.mission.fixtures import ChargerFile, MarkerFile
 from uvf.models.mission.formation import Follow, check_follow
+from uvf.models.mission.launch import Launch
 from uvf.models.mission.task_check import check_tasks
 from uvf.models.mission.task_needs import check_charging
 from uvf.models.mission.tasks import Task, walk
@@ -39,6 +40,7 @@ class StartPose(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     turn_rate: Annotated[float, Meta(ge=-3, le=3), key("rad/s", "Turn rate of an aircraft at the start, positive to the left.")] = 0.0
     charge: Annotated[float, Meta(ge=0, le=1), key("", "Charge of its battery at the start, 0 to 1.")] = 1.0
     on_ground: Annotated[bool, plain("The aircraft starts on its wheels, as one with z = 0 does.")] = False
+    launch: Annotated[Launch | None, plain("The aircraft is thrown, by hand, catapult or bungee, once it is armed.")] = None
 
 
 class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -126,6 +126,7 @@ class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     max_sink: Annotated[
         Positive, key("m/s", "Sink rate at touchdown that the landing gear survives; 10 ft/s of 14 CFR 23.473 by default.")
     ] = 3.05
+    skids: Annotated[list[str], plain("Parts of its structure, contacts of the JSBSim model, on which it may slide over the ground.")] = []
     mesh: Annotated[Name | None, plain("STL or OBJ file that is drawn instead of `looks`.")] = None
     battery: Annotated[BatteryPack | None, plain("Battery of an electric aircraft.")] = None
     looks: Annotated[Looks, plain("How the aircraft is drawn; left out: derived from the JSBSim model.")] = Looks()

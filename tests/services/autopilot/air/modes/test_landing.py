@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from services.autopilot.air.modes.landing import TOUCH_SINK, LandingMode, flare
+from services.autopilot.air.modes.landing import TOUCH_SINK, LandingMode, flare, late
 from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.commands import AttitudeSetpoint, Surfaces
@@ -143,7 +143,7 @@ def test_wheels_down_the_motor_is_off_and_at_rest_it_is_done():
     assert isinstance(lowering[0], AttitudeSetpoint) and lowering[0].throttle == 0.0
     assert lowering[0].pitch > lowering[-1].pitch > 0.0, "the nose comes down gently"
     for _ in range(20):
-        braking = landing.step(now, PARAMS, 0.02).asked
+        braking = landing.step(replace(now, airspeed=10.0), PARAMS, 0.02).asked
     assert isinstance(braking, Surfaces)
     assert braking.brake > 0
     for _ in range(100):
@@ -156,6 +156,32 @@ def test_without_a_range_finder_it_feels_that_it_sinks_no_more():
     for _ in range(60):
         landing.step(now, PARAMS, 0.02)
     assert landing.rolls
+
+
+def test_a_gust_that_holds_it_up_is_not_taken_for_the_ground():
+    landing, now = on_final(-5.0, 0.5, climb=0.0)
+    for i in range(100):
+        landing.step(replace(now, climb=0.3 * math.sin(0.2 * i)), PARAMS, 0.02)
+    assert not landing.rolls
+
+
+def test_without_a_range_finder_it_goes_on_sinking_below_where_it_takes_the_ground_to_be():
+    landing, now = on_final(-1.0, -0.6, climb=-0.4)
+    assert landing.step(now, PARAMS, 0.02).asked.climb == pytest.approx(-TOUCH_SINK)
+
+
+def test_over_the_strip_the_nose_is_not_lowered_below_that_of_touching():
+    landing, now = on_final(10.0, 0.4, clearance=0.4)
+    floor = landing.step(now, PARAMS, 0.02).asked.lowest_pitch
+    alpha = PARAMS.alpha_zero_lift + PARAMS.alpha_per_load * 9.80665 / 19.0**2
+    assert floor == pytest.approx(alpha - TOUCH_SINK / 19.0 - 0.04, abs=0.005)
+    high, above = on_final(100.0, 8.0)
+    assert high.step(above, PARAMS, 0.02).asked.lowest_pitch == -math.inf
+
+
+def test_carried_on_beyond_the_point_it_sinks_faster():
+    assert late(5.0) == 0.0
+    assert 0.0 < late(-5.0) < late(-10.0) == late(-30.0)
 
 
 @pytest.mark.parametrize(("airspeed", "flies"), [(18.0, True), (9.0, False)])

@@ -24,13 +24,27 @@ def after(phase, seconds, params=PARAMS, **now):
     return wish
 
 
-def test_the_throttle_opens_within_a_second_and_the_elevator_stays_neutral():
+def test_the_throttle_opens_within_a_second_and_the_elevator_takes_half_of_the_load_off_the_nose_wheel():
     phase = standing()
     half = after(phase, 0.5).asked
     assert half.throttle == pytest.approx(0.5, abs=0.03)
     full = after(phase, 1.0, ground_speed=5.0, airspeed=5.0).asked
     assert isinstance(full, Surfaces)
-    assert (full.throttle, full.elevator) == (1.0, 0.0)
+    assert (full.throttle, full.elevator) == (1.0, pytest.approx(0.5 * PARAMS.elev_per_alpha * STANDING["pitch"]))
+
+
+def test_a_strong_motor_is_opened_only_as_far_as_is_told():
+    limited = AirParams(takeoff_throttle=0.6)
+    phase = standing(params=limited)
+    assert after(phase, 2.0, limited, ground_speed=5.0, airspeed=5.0).asked.throttle == pytest.approx(0.6)
+    assert after(phase, 0.5, limited, height=2.5, airspeed=21.0, ground_speed=21.0).asked.throttle == pytest.approx(0.6)
+
+
+def test_low_over_the_strip_it_banks_a_little_back_to_its_line():
+    phase = standing()
+    after(phase, 2.0, height=2.5, airspeed=21.0, ground_speed=21.0)
+    right, left = (after(phase, 0.02, height=3.0, airspeed=21.0, ground_speed=21.0, east=east).asked.bank for east in (5.0, -5.0))
+    assert -0.16 < right < -0.05 and 0.05 < left < 0.16
 
 
 def test_it_is_steered_back_to_its_line():
