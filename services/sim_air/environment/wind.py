@@ -38,19 +38,26 @@ class AirMass:
         self._wind = wind
         self._steady = np.array(wind.steady)
         self._changes = list(wind.changes)
+        self._begins = wind.begins
         self._t = 0.0
         self._turbulence = Turbulence(span, rng) if wind.turbulence else None
         self._entered = [0.0] * len(wind.gusts)  # m of air flown since the beginning of each gust that has a time
-        self.is_steady = not (wind.shear or wind.changes or wind.gusts or wind.turbulence)
+        self.is_steady = not (wind.shear or wind.begins or wind.changes or wind.gusts or wind.turbulence)
 
     def blow(self, steady: Floats) -> None:
         """Takes another mean wind (3,) [m/s, world], without shear, which stays."""
-        self._steady, self._changes = steady, []
+        self._steady, self._changes, self._begins = steady, [], None
 
     def mean(self, height: float) -> Floats:
         """Mean wind (3,) [m/s, world] at ``height`` [m above the ground] in the last step, without gusts."""
-        shear, steady = self._wind.shear, self._steady_now()
+        shear, steady = self._wind.shear, self._begun(height) * self._steady_now()
         return steady if shear is None else steady * _growth(shear, height)
+
+    def _begun(self, height: float) -> float:
+        """Share of the wind that blows by now at this height, 0 to 1."""
+        if (begins := self._begins) is None:
+            return 1.0
+        return _risen(self._t - begins.time, begins.over) * _risen(height - begins.height, begins.layer)
 
     def _steady_now(self) -> Floats:
         steady = self._steady
@@ -63,15 +70,15 @@ class AirMass:
     def step(self, t: float, dt: float, flight: AirRelativeState) -> AirMotion:
         """Motion of the air at the aircraft at ``t`` [s], ``dt`` [s] after the step before."""
         self._t = t
-        velocity, rates = self.mean(flight.height), CALM
+        velocity, rates, begun = self.mean(flight.height), CALM, self._begun(flight.height)
         for i, gust in enumerate(self._wind.gusts):
-            velocity = velocity + self._share(i, gust, t, flight.airspeed * dt, flight) * np.array(gust.velocity)
+            velocity = velocity + self._share(i, gust, t, flight.airspeed * dt, flight) * begun * np.array(gust.velocity)
         if self._turbulence is not None and self._wind.turbulence is not None:
             data = self._wind.turbulence
             g = self._turbulence.step(flight.airspeed * dt, dt, strength(flight.height, data.at_20_feet, data.severity))
             c, s = math.cos(flight.yaw), math.sin(flight.yaw)
-            velocity = velocity + np.array((c * g.u + s * g.v, s * g.u - c * g.v, -g.w))
-            rates = np.array((g.p, g.q, g.r)) if flight.airspeed > STILL else CALM
+            velocity = velocity + begun * np.array((c * g.u + s * g.v, s * g.u - c * g.v, -g.w))
+            rates = begun * np.array((g.p, g.q, g.r)) if flight.airspeed > STILL else CALM
         return AirMotion(velocity, rates)
 
     def _share(self, i: int, gust: Gust, t: float, flown: float, flight: AirRelativeState) -> float:
@@ -82,6 +89,11 @@ class AirMass:
             return 0.0
         self._entered[i] += flown
         return one_minus_cosine(self._entered[i], gust.length)
+
+
+def _risen(beyond: float, over: float) -> float:
+    """0 up to where something begins, 1 from ``over`` beyond that on, straight between."""
+    return min(max(beyond / over, 0.0), 1.0) if over > 0 else float(beyond >= 0)
 
 
 def _growth(shear: Shear, height: float) -> float:

@@ -89,6 +89,7 @@ class TakeoffMode(FlightPhase):
             self._to(TakeoffStage.REJECTED)
         if self._rise(now) > LIFTED:
             self._to(TakeoffStage.CLIMB)
+            return self._climb(now, level, params)
         rudder, throttle = rudder_along(level, self._course, right), params.takeoff_throttle * min(self._since / OPENING[params.gear], 1.0)
         if now.airspeed > ROTATION * params.min_airspeed:
             return Setpoint(held(now, level, AttitudeSetpoint(0.0, params.takeoff_pitch, throttle, rudder)))

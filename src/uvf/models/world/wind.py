@@ -66,11 +66,21 @@ class WindChange(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     over: Annotated[float, Meta(ge=0, le=1e6), key("s", "Time that the change takes.")] = 0.0
 
 
+class WindBegin(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """When and where all of the wind begins: before that time and below that height the air is at rest."""
+
+    time: Annotated[float, Meta(ge=0, le=1e6), key("s", "Simulation time at which it begins.")] = 0.0
+    over: Annotated[float, Meta(ge=0, le=1e6), key("s", "Time in which it comes up.")] = 5.0
+    height: Annotated[float, Meta(ge=0, le=1e4), key("m", "Height above the ground below which there is none.")] = 0.0
+    layer: Annotated[float, Meta(ge=0, le=1e4), key("m", "Heights above that over which it comes up.")] = 10.0
+
+
 class Wind(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Velocity of the air [m/s], ENU, pointing where the wind blows to."""
 
     steady: Annotated[Velocity, plain("Velocity of the air [m/s], ENU, pointing where the wind blows to.")] = (0.0, 0.0, 0.0)
     shear: Annotated[Shear | None, plain("How the steady wind grows with height.")] = None
+    begins: Annotated[WindBegin | None, plain("When and where it begins; left out: at once and everywhere.")] = None
     changes: Annotated[list[WindChange], plain("Other steady winds that come up later, in the order of their times.")] = []
     gusts: Annotated[list[Gust], plain("Single gusts, one minus cosine.")] = []
     turbulence: Annotated[TurbulenceFile | None, plain("Dryden turbulence.")] = None

@@ -1,5 +1,6 @@
 """The air about one aircraft: mean wind, gusts and turbulence put together."""
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -9,7 +10,7 @@ from services.sim_air.build import build
 from services.sim_air.environment.wind import AirMass, AirRelativeState
 from uvf.maths.dryden import strength
 from uvf.models.scenario import load_scenario
-from uvf.models.world.wind import Gust, Shear, TurbulenceFile, Wind, WindChange
+from uvf.models.world.wind import Gust, Shear, TurbulenceFile, Wind, WindBegin, WindChange
 from uvf.runtime.time.lockstep import Lockstep
 
 DT = 0.01
@@ -54,8 +55,24 @@ def test_wind_that_changes_does_so_in_a_straight_line_and_stays():
     assert found == pytest.approx([0.0, -2.5, -10.0, -10.0, 0.0, 0.0])
 
 
+def test_wind_may_begin_at_a_time_and_above_a_height_gusts_and_turbulence_too():
+    blowing = Wind((8.0, 0.0, 0.0), gusts=[Gust((0.0, 5.0, 0.0), 100.0, place=(0.0, 0.0))], turbulence=TurbulenceFile("moderate"))
+    air = mass(msgspec.structs.replace(blowing, begins=WindBegin(time=20.0, over=10.0, height=30.0, layer=20.0)))
+    assert not air.is_steady
+    for t, height in ((19.0, 100.0), (60.0, 29.0)):
+        still = air.step(t, DT, flight(height=height))
+        assert not still.velocity.any() and not still.rates.any()
+    assert air.mean(100.0)[0] == pytest.approx(8.0)
+    air.step(25.0, DT, flight(height=40.0))
+    assert air.mean(40.0)[0] == pytest.approx(8.0 / 4)
+    alike, whole = mass(msgspec.structs.replace(blowing, begins=WindBegin())), mass(blowing)
+    for k in range(600, 650):
+        now, usual = (one.step(k * DT, DT, flight()) for one in (alike, whole))
+    np.testing.assert_array_equal(now.velocity, usual.velocity)
+
+
 def test_wind_that_an_operator_lets_blow_stays_whatever_was_to_come():
-    air = mass(Wind(changes=[WindChange(at=10.0, steady=(-10.0, 0.0, 0.0))]))
+    air = mass(Wind(changes=[WindChange(at=10.0, steady=(-10.0, 0.0, 0.0))], begins=WindBegin(time=1e3)))
     air.blow(np.array((1.0, 0.0, 0.0)))
     assert air.step(20.0, DT, flight()).velocity.tolist() == [1.0, 0.0, 0.0]
 
