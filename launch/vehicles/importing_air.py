@@ -76,8 +76,8 @@ def _described(vehicle: str, model: str) -> tuple[dict[str, Any], list[str]]:
     controls = CommandProperties(throttle=Lever(lag=0.0 if own else MOTOR_LAG))
     first = AirBody(model=model, physics_hz=120.0, trim_speed=speed, servo_rate=rate, servo_lag=lag, controls=controls)
     body = tried(folder, first, notes)
-    servos = f"guessed: servos of {rate:g} rad/s with a lag of {lag:g} s, a motor of {MOTOR_LAG:g} s"
-    servos = "found: servos in the model" if own else servos
+    guessed = f"guessed: servos of {rate} rad/s with a lag of {lag:g} s, a motor of {MOTOR_LAG:g} s"
+    servos = "found: servos in the model" if own else guessed
     notes.add(f"{servos}; guessed: sensors, the sink rate that the landing gear holds")
     stance = stands(folder, body, body.physics_hz)
     if stance is not None:

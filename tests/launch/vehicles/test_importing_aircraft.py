@@ -8,11 +8,14 @@ import jsbsim
 import numpy as np
 import pytest
 
+from benchmarks.autopilot.landings import without_wheels
 from launch.vehicles.aircraft_rules import SEA_LEVEL
 from launch.vehicles.aircraft_trial import level
 from launch.vehicles.importing import NOTES, import_vehicle
 from launch.vehicles.inspection import inspect
 from services.sim_air.engine.airframe import Airframe
+from uvf.models.jsbsim.model_file import steers_by_brakes
+from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
 
@@ -95,7 +98,28 @@ def test_what_the_model_tells_is_not_guessed(tmp_path):
     file = load_vehicle(tmp_path, "cub")
     assert file.air.controls.flap.limit == 0.0 and "found: it has no flaps" in notes
     assert 0.3 < file.params["autopilot_air"]["gear_height"] < 3.0
-    assert any(re.match(r"found: it stands \d\.\d\d m high, its nose \d+ degrees up", note) for note in notes)
+    assert any(
+        re.match(r"found: it stands \d\.\d\d m high on wheels, one of them under its tail, its nose \d+ degrees up", n) for n in notes
+    )
+    assert file.params["autopilot_air"]["gear"] == "tail_wheel" and 0.1 < file.params["autopilot_air"]["rest_pitch"] < 0.3
+
+
+def test_a_model_without_wheels_is_thrown_and_slides(tmp_path):
+    root = without_wheels("stick25", tmp_path)
+    notes = import_vehicle(root / "vehicles" / "stick25" / "stick25", tmp_path / "belly")
+    file = load_vehicle(tmp_path, "belly")
+    assert set(file.air.skids) == {"nose_keel", "left_keel", "right_keel", "tail_keel"}
+    assert file.params["autopilot_air"]["gear"] == "belly" and file.params["autopilot_air"]["launch_push"] > 0
+    assert any("it has no wheels: it is thrown" in note for note in notes)
+
+
+def test_without_a_wheel_that_follows_the_rudder_it_is_steered_by_its_brakes(tmp_path):
+    model = tmp_path / "stick25" / "stick25.xml"
+    shutil.copytree(ROOT / "vehicles" / "stick25" / "stick25", model.parent)
+    shutil.copytree(ROOT / "vehicles" / "stick25" / "engine", tmp_path / "engine")
+    assert not steers_by_brakes(model)
+    model.write_text(model.read_text().replace("<max_steer unit='DEG'>-20</max_steer>", "<max_steer unit='DEG'>360</max_steer>"))
+    assert steers_by_brakes(model)
 
 
 def test_a_travel_that_is_not_the_same_both_ways_is_told(tmp_path):
