@@ -132,12 +132,23 @@ def comes_to_rest(models: Path, air: AirBody, rate: float) -> bool:
 
     Nor does it jump when its motor runs up: the torque of a light propeller takes shorter steps than its springs.
     """
+    airframe = _standing(models, air, rate)
+    if airframe is None:
+        return False
+    try:
+        return not (airframe.has_wheels and airframe.powered) or _runs_up(airframe, Actuators(Controls(brake=1.0), air), rate)
+    except Runaway:
+        return False
+
+
+def _standing(models: Path, air: AirBody, rate: float) -> Airframe | None:
+    """The aircraft at rest on the ground; None where it does not come to rest."""
     airframe = Airframe(models, msgspec.structs.replace(air, physics_hz=rate), SEA_LEVEL)
     try:
         airframe.stand(STANDING)
-        return not (airframe.has_wheels and airframe.powered) or _runs_up(airframe, Actuators(Controls(brake=1.0), air), rate)
-    except (BadInput, Runaway):
-        return False
+    except BadInput:
+        return None
+    return airframe
 
 
 def _runs_up(airframe: Airframe, actuators: Actuators, rate: float) -> bool:
@@ -168,10 +179,8 @@ class GroundStance:
 
 def stands(models: Path, air: AirBody, rate: float) -> GroundStance | None:
     """How the aircraft stands with ``rate`` [1/s] physics steps; None where it does not come to rest."""
-    airframe = Airframe(models, msgspec.structs.replace(air, physics_hz=rate), SEA_LEVEL)
-    try:
-        airframe.stand(STANDING)
-    except BadInput:
+    airframe = _standing(models, air, rate)
+    if airframe is None:
         return None
     motion = airframe.motion()
     _, pitch, _ = to_euler(motion.world_from_body)

@@ -51,7 +51,12 @@ def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
         found[name] = min(max(min(reach, STEEPEST * body.trim_speed), 0.5), 15.0)
     needed = found["trim_throttle"] + found["throttle_climb"] * found["climb_max"]
     found["takeoff_throttle"] = max(_pulling(airframe, body.trim_speed), min(needed, 1.0))
-    return {name: float(f"{value:.3g}") for name, value in found.items()}
+    return {name: three_digits(value) for name, value in found.items()}
+
+
+def three_digits(value: float) -> float:
+    """As it is written into a vehicle's file."""
+    return float(f"{value:.3g}")
 
 
 def _pulling(airframe: Airframe, speed: float) -> float:

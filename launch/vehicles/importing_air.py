@@ -12,7 +12,7 @@ import yaml
 from launch.vehicles.air_design import modelled, timing
 from launch.vehicles.aircraft_rules import SEA_LEVEL, GroundStance, stands
 from launch.vehicles.aircraft_trial import tried
-from launch.vehicles.autopilot_guess import autopilot_figures
+from launch.vehicles.autopilot_guess import autopilot_figures, three_digits
 from launch.vehicles.tuning import rounded
 from services.sim_air.engine.airframe import Airframe
 from uvf.control.design.gain_search import FINAL, LATERAL, LONGITUDINAL, begun
@@ -105,7 +105,11 @@ def _gear(path: Path, stance: GroundStance, body: AirBody, notes: Notes) -> dict
     up = f"its nose {abs(math.degrees(stance.pitch)):.0f} degrees {'up' if stance.pitch >= 0 else 'down'}"
     on = GEAR[stance.gear]
     notes.add(f"found: it stands {stance.height:.2f} m high on {on}, {up}")
-    figures: dict[str, float | str] = {"gear_height": _short(stance.height), "gear": stance.gear, "rest_pitch": _short(stance.pitch)}
+    figures: dict[str, float | str] = {
+        "gear_height": three_digits(stance.height),
+        "gear": stance.gear,
+        "rest_pitch": three_digits(stance.pitch),
+    }
     if steers_by_brakes(path):
         notes.add("found: no wheel follows its rudder; on the ground it is steered by its brakes")
         figures["brake_steering"] = BRAKE_STEERING
@@ -113,11 +117,7 @@ def _gear(path: Path, stance: GroundStance, body: AirBody, notes: Notes) -> dict
         notes.add("it has no wheels: it is thrown, by 'launch' under 'start' of a mission, and slides on", ", ".join(stance.skids))
         figures["launch_push"] = PUSH
     flap = body.controls.flap.limit
-    return figures | ({"land_flap": _short(LAND_FLAP * flap)} if flap > 0 else {})
-
-
-def _short(value: float) -> float:
-    return float(f"{value:.3g}")
+    return figures | ({"land_flap": three_digits(LAND_FLAP * flap)} if flap > 0 else {})
 
 
 def _autopilot(folder: Path, body: AirBody, stance: GroundStance | None, notes: Notes) -> dict[str, float | str]:
@@ -140,5 +140,5 @@ def _autopilot(folder: Path, body: AirBody, stance: GroundStance | None, notes: 
     notes.add("'uvf vehicle tune NAME --write' designs its gains and shows their margins")
     gains = {name: getattr(params, name) for name in (*LATERAL, *LONGITUDINAL, *FINAL)}
     path = folder / body.model / f"{body.model}.xml"
-    leads = {name: _short(value) for name, value in timing(aircraft, params, body.controls.aileron.limit).items()}
+    leads = {name: three_digits(value) for name, value in timing(aircraft, params, body.controls.aileron.limit).items()}
     return figures | gains | leads | (_gear(path, stance, body, notes) if stance else {})

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from rich.table import Table
 
 from launch.vehicles.air_design import ModelledAircraft, modelled, timing
-from launch.vehicles.autopilot_guess import autopilot_figures
+from launch.vehicles.autopilot_guess import autopilot_figures, three_digits
 from launch.vehicles.linearize import airframe_of
 from launch.vehicles.parameter_lines import SERVICE, with_params
 from uvf.control.design import lateral_loops, longitudinal_loops
@@ -99,7 +99,7 @@ def tune(folder: Path, firmness: float = 1.0) -> Tuning:
     aircraft = modelled(airframe, file.air, params)
     params = rounded(designed(aircraft.loops, begun(aircraft.loops, aircraft.with_mix(params)), firmness))
     figures = measured | {name: getattr(params, name) for name in GAINS}
-    figures |= {name: float(f"{value:.3g}") for name, value in timing(aircraft, params, file.air.controls.aileron.limit).items()}
+    figures |= {name: three_digits(value) for name, value in timing(aircraft, params, file.air.controls.aileron.limit).items()}
     params = msgspec.structs.replace(params, **figures)
     was = {name: getattr(before, name) for name in figures}
     return Tuning(folder, was, figures, aircraft, params, aircraft.loops.loops(params), aircraft.loops.worst(params))
@@ -107,7 +107,7 @@ def tune(folder: Path, firmness: float = 1.0) -> Tuning:
 
 def rounded(params: AirParams) -> AirParams:
     """With the gains as they are written."""
-    return msgspec.structs.replace(params, **{name: float(f"{getattr(params, name):.3g}") for name in GAINS})
+    return msgspec.structs.replace(params, **{name: three_digits(getattr(params, name)) for name in GAINS})
 
 
 def tables(tuning: Tuning) -> Iterator[Table]:

@@ -71,10 +71,8 @@ class AircraftLauncher:
 
     def flight(self, wind: Floats) -> AirRelativeState:
         """The state that the wind model depends on."""
-        way, speed, _ = self._way()
-        position = self._start + way * self._along
-        through = float(np.linalg.norm(speed * self._along - wind))
-        return AirRelativeState(position, self._launch.height + float(position[2] - self._start[2]), self._yaw, through)
+        now = self.motion(wind)
+        return AirRelativeState(now.position, self._launch.height + float(now.position[2] - self._start[2]), self._yaw, now.airspeed)
 
     def air(self, wind: Floats) -> Air:
         """The air about it, and what the pitot tube takes in of it."""

@@ -62,9 +62,7 @@ class AirMass:
     def _steady_now(self) -> Floats:
         steady = self._steady
         for change in self._changes:
-            if self._t >= change.at:
-                share = 1.0 if change.over == 0.0 else min((self._t - change.at) / change.over, 1.0)
-                steady = steady + share * (np.array(change.steady) - steady)
+            steady = steady + _risen(self._t - change.at, change.over) * (np.array(change.steady) - steady)
         return steady
 
     def step(self, t: float, dt: float, flight: AirRelativeState) -> AirMotion:

@@ -175,16 +175,16 @@ class LandingMode(FlightPhase):
             wheels.touched(now, params)
             self._to(LandingStage.ROLL)
         lift = self._lift(now, climb) if wheels.height < LIFTS_BELOW else 0.0
-        return Setpoint(self._down(now, params, climb, fast), params.land_flap, lift=lift, firm=True)
+        return Setpoint(self._down(now, params, distance, climb, fast), params.land_flap, lift=lift, firm=True)
 
-    def _down(self, now: Estimate, params: AirParams, climb: float, airspeed: float) -> PathSetpoint:
+    def _down(self, now: Estimate, params: AirParams, distance: float, climb: float, airspeed: float) -> PathSetpoint:
         """Along the lane; near the ground wings about level, then the nose along the strip and the throttle closing."""
         height = self._wheels.height
         aim = line_reference(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
         rudder = self._decrab(now) if height < DECRAB_BELOW else None
         throttle = touch_throttle(now, params, climb, airspeed, height) if height < IDLES_BELOW else None
         bank = TOUCH_BANK + (LOW_BANK - TOUCH_BANK) * max(height, 0.0) / LOW if height < LOW else None
-        faster = 0.0 if params.gear == "tail_wheel" else late(self.lane.locate(now)[0])  # its propeller is near to the ground
+        faster = 0.0 if params.gear == "tail_wheel" else late(distance)  # its propeller is near to the ground
         lowest = nose_up(now, params, faster) if height < NOSE_UP_BELOW else -math.inf
         return PathSetpoint(aim, None, climb, airspeed, bank, throttle, rudder, lowest)
 
