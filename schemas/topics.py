@@ -135,6 +135,7 @@ GIMBAL_JOINTS = Topic(
 # truth: for simulators among themselves, tests, displays and scores; never for an algorithm
 TRUTH = Topic(f"{_V}/truth/state", m.NavState, 50, _Q.STATE, "true motion, world frame")
 OBJECTS = Topic(f"{_S}/truth/objects", m.SimObjects, 20, _Q.STATE, "what has been put into the ground simulation")
+WINDSOCKS = Topic(f"{_S}/truth/windsocks", m.FrameTransforms, 10, _Q.STATE, "world from each windsock, which points with the wind")
 AIR_OBJECTS = Topic(f"{_S}/truth/aircraft", m.SimObjects, 20, _Q.STATE, "aircraft that have been put into the air simulation")
 
 # navigation

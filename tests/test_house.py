@@ -17,7 +17,7 @@ ENGINES = {
     "mcap": [f"src/uvf/runtime/log/{name}.py" for name in ("reading", "recording", "recovery")],
     "pybullet": ["services/sim_camera/renderer.py", "services/sim_ground/engine.py"],
     "jsbsim": ["services/sim_air/engine/airframe.py"],
-    "pymavlink": ["src/uvf/mavlink/generate.py"],
+    "pymavlink": ["src/uvf/mavlink/generate.py", "src/uvf/models/world/earth_field.py"],  # its messages, and its map of the magnetic field
     "sdl2": ["launch/teleop/gamepad.py"],
 }
 

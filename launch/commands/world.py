@@ -1,13 +1,19 @@
 """``uvf world ...``: look at worlds, check them, draw them, make new ones and take them over from others."""
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from launch.refusal import bad_input_is_one_line, counted
 
+if TYPE_CHECKING:
+    from uvf.models.world.file import WorldFile
+
 world_app = typer.Typer(no_args_is_help=True, help="Worlds: list, show, check, picture, new, import.")
+new_app = typer.Typer(no_args_is_help=True, help="Make up a world: a house, an airfield.")
+world_app.add_typer(new_app, name="new")
 
 NameArgument = Annotated[str, typer.Argument(help="A folder in worlds/.")]
 RadiusOption = Annotated[float, typer.Option(min=0.01, max=10.0, metavar="m", help="Of the vehicle that is to drive there.")]
@@ -91,22 +97,60 @@ def world_check(
     raise typer.Exit(1 if found else 0)
 
 
-@world_app.command("new")
-def world_new(
-    name: Annotated[str, typer.Argument(help="Of the new folder in worlds/.")],
+NewName = Annotated[str, typer.Argument(help="Of the new folder in worlds/.")]
+ReplaceOption = Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")]
+
+
+@new_app.command("house")
+def new_house(
+    name: NewName,
     rooms: Annotated[int, typer.Option(min=1, max=40, help="How many.")] = 6,
     seed: Annotated[int, typer.Option(min=0, help="The same seed makes the same house.")] = 1,
-    replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
+    replace: ReplaceOption = False,
 ) -> None:
     """Make up a house with rooms, doors and furniture; every room can be reached."""
     from launch.worlds.generator import generate
+
+    _write_new(name, replace, generate(rooms, seed))
+
+
+@new_app.command("airfield")
+def new_airfield(
+    name: NewName,
+    at: Annotated[
+        tuple[float, float, float], typer.Option(metavar="deg deg m", help="Latitude, longitude and height above mean sea level.")
+    ] = (40.77, 14.79, 300.0),
+    strip: Annotated[tuple[float, float], typer.Option(metavar="m m", help="Length and width of its strip.")] = (300.0, 12.0),
+    course: Annotated[
+        float, typer.Option(min=-360.0, max=360.0, metavar="deg", help="One direction of the strip, from true north.")
+    ] = 90.0,
+    replace: ReplaceOption = False,
+) -> None:
+    """Make up an airfield: a strip with markings, a hangar, a windsock, the magnetic field of the place."""
+    from math import radians
+
+    from launch.worlds.airfield import AirfieldPlan, airfield, write_plate
+    from uvf.models.world.file import Origin, Strip
+    from uvf.models.yaml_data import convert
+
+    with bad_input_is_one_line():
+        place = convert(dict(zip(Origin.__struct_fields__, at, strict=True)), Origin, "--at")
+        sizes = {"length": strip[0], "width": strip[1]}
+        convert({"name": "strip", "centre": (0.0, 0.0, 0.0), "yaw": 0.0, **sizes}, Strip, "--strip")
+    about = f"An airfield with a strip of {strip[0]:g} x {strip[1]:g} m, course {course % 360.0:03.0f} deg."
+    _write_new(name, replace, airfield(AirfieldPlan(place, *strip, radians(course)), about), write_plate)
+
+
+def _write_new(name: str, replace: bool, world: "WorldFile", more: Callable[[Path], None] = lambda folder: None) -> None:
+    """Writes a made-up world, and with ``more`` the files beside it."""
     from uvf.models.importing.worlds import make_room, new_folder
     from uvf.models.world.writer import write_world
 
     with bad_input_is_one_line():
         folder = new_folder(_worlds(), name)
         make_room(folder, replace)
-    path = write_world(generate(rooms, seed), folder)
+    path = write_world(world, folder)
+    more(folder)
     typer.echo(f"uvf: {path}; look at it with 'uvf world picture {name}'")
 
 

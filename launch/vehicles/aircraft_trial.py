@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 import numpy as np
@@ -12,6 +13,7 @@ from services.sim_air.engine.airframe import Airframe
 from services.sim_air.engine.states import Held, InitialState
 from services.sim_air.engine.trim import Trim
 from services.sim_air.engine.wiring import Controls
+from uvf.maths.geodesy import GRAVITY
 from uvf.models.importing.notes import Notes
 from uvf.models.jsbsim.model_parts import Unmade, properties_read
 from uvf.models.vehicle.air import AirBody, Surface
@@ -20,10 +22,11 @@ from uvf.models.yaml_data import BadInput
 RATES = (120.0, 240.0, 480.0, 960.0, 1920.0)  # Hz; the first is JSBSim's own
 SPEEDS = (1.0, 1.2, 0.85, 1.4, 0.7, 1.7, 2.0)  # of the first guess
 USEFUL = (0.1, 0.9)  # throttle of a cruise from which there is something left to both sides
+CLIMB = 0.02  # rad
 TURNS = 200  # physics steps after which a surface stands
 TRAVEL = {"aileron": "left_aileron", "elevator": "elevator", "rudder": "rudder", "flap": "flap"}
 LEAST = 0.02  # rad of travel that is one
-UNEQUAL = 0.1  # of the travel, between both ends, from which on it is told
+UNEQUAL = 0.1  # of what a surface does, between both ways, from which on it is told
 NOTHING = 1e-4  # m/s^2 or rad/s^2
 
 
@@ -39,6 +42,11 @@ def tried(folder: Path, body: AirBody, notes: Notes) -> AirBody:
 def level(speed: float, climb: float = 0.0) -> InitialState:
     """Flight at ``speed`` [m/s] through still air with flight-path angle ``climb`` [rad], yaw 0, at the height of the trials."""
     return InitialState(np.array((0.0, 0.0, HEIGHT)), 0.0, speed, np.zeros(3), climb)
+
+
+def turning(speed: float) -> InitialState:
+    """Level flight at ``speed`` [m/s], banked by 45 degrees: twice the load factor squared."""
+    return replace(level(speed), turn_rate=GRAVITY / speed)
 
 
 def _with_settings(folder: Path, body: AirBody, notes: Notes) -> AirBody:
@@ -98,12 +106,23 @@ def _with_travel(airframe: Airframe, body: AirBody, notes: Notes) -> AirBody:
             else:
                 notes.add("guessed: the travel is not told of", name)
             continue
-        if name != "flap" and abs(abs(ends[0]) - abs(ends[1])) > UNEQUAL * travel:
-            first, last = (round(abs(end), 3) for end in ends)
-            notes.add(f"found: the {name} goes {last:g} rad one way and {first:g} the other; taken as {round(travel, 3):g} to both sides")
-        surface = msgspec.structs.replace(control, limit=round(min(travel, 1.6), 3))
-        body = _with(body, name, surface)
+        stronger = _stronger(airframe, body, name) if name in RIGHT_WAY else 1.0
+        positive, negative = (round(min(2 * travel * share / (1 + stronger), 1.6), 3) for share in (stronger, 1.0))
+        other = negative if negative != positive else None
+        if other is not None:
+            notes.add(f"found: the {name} goes from {-negative:g} to {positive:g} rad, by what it does")
+        body = _with(body, name, msgspec.structs.replace(control, limit=positive, negative_limit=other))
     return body
+
+
+def _stronger(airframe: Airframe, body: AirBody, name: str) -> float:
+    """What half of the command does the positive way over what it does the other way; 1 where that is about the same."""
+    index, _, _ = RIGHT_WAY[name]
+    half = getattr(body.controls, name).limit / 2
+    start = level(body.trim_speed)
+    at_rest, *moved = (airframe.accelerations(start, replace(ABOUT_LEVEL, **{name: at}))[index] for at in (0.0, half, -half))
+    does, other = (abs(float(effect - at_rest)) for effect in moved)
+    return does / other if min(does, other) > NOTHING and max(does, other) > (1 + UNEQUAL) * min(does, other) else 1.0
 
 
 def _with(body: AirBody, name: str, surface: Surface) -> AirBody:
@@ -137,23 +156,40 @@ def _with_rate(folder: Path, body: AirBody, notes: Notes) -> AirBody:
 
 
 def _with_speed(airframe: Airframe, body: AirBody, notes: Notes) -> AirBody:
-    """The first speed at which it flies steadily with some throttle left, else the first at which it flies at all."""
+    """The first speed at which it climbs and turns with some throttle left, else the first at which it flies at all."""
     flown = list(_flights(airframe, body.trim_speed))
     if not flown:
         notes.add(f"guessed: trim_speed; no steady level flight was found from {min(SPEEDS):g} to {max(SPEEDS):g} times that")
         return body
-    speed, trim = min(flown, key=lambda found: not (USEFUL[0] < found[1].throttle < USEFUL[1]) if airframe.powered else False)
+    speed, trim, _ = min(flown, key=lambda found: not found.useful)
     notes.add(f"found: steady flight at {speed:g} m/s with {trim.throttle:.2f} of the throttle, elevator {trim.elevator:.3f} rad")
     return msgspec.structs.replace(body, trim_speed=speed)
 
 
-def _flights(airframe: Airframe, guess: float) -> Iterator[tuple[float, Trim]]:
+class _Flight(NamedTuple):
+    speed: float  # m/s
+    trim: Trim
+    useful: bool
+
+
+def _flights(airframe: Airframe, guess: float) -> Iterator[_Flight]:
+    """Up to the first that is of use."""
     for factor in SPEEDS:
         speed = float(f"{guess * factor:.2g}")
         try:
             trim = airframe.start(level(speed))
         except BadInput:
             continue
-        yield speed, replace(trim)
-        if not airframe.powered or USEFUL[0] < trim.throttle < USEFUL[1]:
+        cruises = not airframe.powered or USEFUL[0] < trim.throttle < USEFUL[1]
+        yield _Flight(speed, trim, useful := cruises and _manoeuvres(airframe, speed))
+        if useful:
             return
+
+
+def _manoeuvres(airframe: Airframe, speed: float) -> bool:
+    try:
+        for flight in (level(speed, CLIMB), turning(speed)):
+            airframe.start(flight)
+    except BadInput:
+        return False
+    return True

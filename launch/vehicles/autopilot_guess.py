@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 
 from launch.vehicles.aircraft_rules import ABOUT_LEVEL, HEIGHT
-from launch.vehicles.aircraft_trial import level
+from launch.vehicles.aircraft_trial import CLIMB, level, turning
 from services.sim_air.analysis.equilibrium import Condition, find
 from services.sim_air.analysis.linear import LinearModels, held_still, linearize
 from services.sim_air.analysis.performance import climb_rate, glides, stall
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Held, InitialState
+from services.sim_air.engine.states import Held
 from services.sim_air.engine.trim import Trim
 from services.sim_air.engine.wiring import Controls
 from uvf.maths.geodesy import GRAVITY
@@ -21,7 +21,7 @@ from uvf.maths.state_space import jacobian
 from uvf.models.vehicle.air import AirBody
 from uvf.models.yaml_data import BadInput
 
-OTHERS, CLIMB = (1.15, 1.07, 0.93), 0.02  # of the trim speed, the first at which it flies; rad
+OTHERS = 1.15, 1.07, 0.93  # of the trim speed, the first at which it flies
 SLOWEST, FASTEST = 0.8, 1.25  # of the trim speed
 STEEPEST = 0.12  # climb and sink over the speed
 SHARE = 0.7  # of the climb at full throttle
@@ -31,6 +31,9 @@ MARGIN = 1.1  # of a speed over that at which the wing stalls
 HIGHEST_ALPHA = 0.25  # rad, where a model tells of no stall
 IDLING = (0.0, 0.15, 0.3)
 THROTTLES = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
+RUDDER_SHARE = 0.7  # the rest is for gusts
+LEAST_CROSSWIND, MOST_CROSSWIND = 0.2, 0.45  # of min_airspeed; 0.2 is shown of every certified aeroplane (CS 23.233)
+LEAST_SLOPE = 1e-3  # s/m, of throttle per climb
 TAKE_OFF, STARTING = 4.0, 0.3  # m/s^2, of trim speed
 LOWERED, FLAP_STEPS = 0.1, (1e-3, 1e-3, 0.05)  # rad of flap; rad of alpha, elevator and flap
 
@@ -43,8 +46,10 @@ def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
     models = linearize(airframe, body.trim_speed, HEIGHT, Path(body.model))
     rates = _rates(models, body)  # first: it tells of an aircraft that cannot bank, which would not fly a turn either
     found = {**_balance(airframe, body.trim_speed), **rates, **_measures(body.trim_speed)}
+    found["rudder_force"] = _within(models.lateral.slope("v", "delta_r"), -50.0, 50.0)
     found["flap_alpha"] = _within(_flap_lift(airframe, models.trim), 0.0, 1.0)
     found |= _slowest(airframe, body, found) | {"idle_sink": _within(_idle_sink(airframe, body, body.trim_speed), 0.1, 20.0)}
+    found["crosswind_max"] = _crosswind(models, body, found["min_airspeed"])
     dives = IDLE_SHARE * _idle_sink(airframe, body, DIVING * body.trim_speed)
     climbs = SHARE * (1 - found["trim_throttle"]) / max(found["throttle_climb"], 1e-3)
     for name, reach in (("climb_max", climbs), ("sink_max", dives)):
@@ -73,6 +78,7 @@ def _balance(airframe: Airframe, speed: float) -> dict[str, float]:
     factor, other = _other(airframe, speed)
     per_load = (cruise.alpha - other.alpha) / (GRAVITY * (1 - factor**-2)) * speed**2
     per_alpha = (cruise.elevator - other.elevator) / (cruise.alpha - other.alpha)
+    least_slope = LEAST_SLOPE if airframe.powered else 0.0
     return {
         "trim_throttle": cruise.throttle,
         "alpha_zero_lift": _within(cruise.alpha - per_load * GRAVITY / speed**2, -0.3, 0.3),
@@ -80,8 +86,8 @@ def _balance(airframe: Airframe, speed: float) -> dict[str, float]:
         "elev_zero_alpha": _within(cruise.elevator - per_alpha * cruise.alpha, -0.5, 0.5),
         "elev_per_alpha": _within(per_alpha, -10.0, 0.0),
         "throttle_speed": _within((other.throttle - cruise.throttle) / ((factor - 1) * speed), 0.0, 0.2),
-        "throttle_load": _within(airframe.start(_turning(speed)).throttle - cruise.throttle, 0.0, 0.5),
-        "throttle_climb": _within((climbing.throttle - cruise.throttle) / (speed * np.sin(CLIMB)), 0.0, 0.5),
+        "throttle_load": _within(airframe.start(turning(speed)).throttle - cruise.throttle, 0.0, 0.5),
+        "throttle_climb": _within((climbing.throttle - cruise.throttle) / (speed * np.sin(CLIMB)), least_slope, 0.5),
     }
 
 
@@ -104,11 +110,6 @@ def _idle_sink(airframe: Airframe, body: AirBody, airspeed: float) -> float:
     return -min((climb_rate(c) for c in flown if c is not None), default=-STEEPEST * body.trim_speed)
 
 
-def _turning(speed: float) -> InitialState:
-    """Level, banked by 45 degrees: twice the load factor squared."""
-    return replace(level(speed), turn_rate=GRAVITY / speed)
-
-
 def _slowest(airframe: Airframe, body: AirBody, found: Mapping[str, float]) -> dict[str, float]:
     """The largest angle of attack: what the elevator balances gliding, within a margin to the stall; and the airspeed that goes with it."""
     with held_still(airframe):
@@ -118,6 +119,14 @@ def _slowest(airframe: Airframe, body: AirBody, found: Mapping[str, float]) -> d
     alpha = _within(min(slowest.alpha, zero + (stalls - zero) / MARGIN**2), 0.05, HIGHEST_ALPHA)
     stalled = (found["alpha_per_load"] * GRAVITY / (alpha - zero)) ** 0.5
     return {"alpha_max": alpha, "min_airspeed": max(SLOWEST * body.trim_speed, MARGIN * stalled)}
+
+
+def _crosswind(models: LinearModels, body: AirBody, airspeed: float) -> float:
+    """m/s, in which a share of the rudder still turns the nose along the strip at an airspeed [m/s], and no more than is usual."""
+    side = models.lateral
+    weathercock, rudder = side.slope("r", "v"), abs(side.slope("r", "delta_r"))
+    slips = RUDDER_SHARE * rudder * body.controls.rudder.limit / max(weathercock, 1e-6) * airspeed / models.trim.airspeed
+    return max(min(slips, MOST_CROSSWIND * airspeed), LEAST_CROSSWIND * airspeed)
 
 
 def _flap_lift(airframe: Airframe, trim: Condition) -> float:

@@ -15,7 +15,8 @@ from launch.vehicles.aircraft_trial import tried
 from launch.vehicles.autopilot_guess import autopilot_figures, three_digits
 from launch.vehicles.tuning import rounded
 from services.sim_air.engine.airframe import Airframe
-from uvf.control.design.gain_search import FINAL, LATERAL, LONGITUDINAL, begun
+from uvf.control.design.design_axes import FINAL, LATERAL, LONGITUDINAL
+from uvf.control.design.gain_start import begun
 from uvf.maths.atmosphere import RHO0
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.importing.jsbsim import copy_model, has_actuators
@@ -123,8 +124,7 @@ def _gear(path: Path, stance: GroundStance, body: AirBody, notes: Notes) -> dict
 def _autopilot(folder: Path, body: AirBody, stance: GroundStance | None, notes: Notes) -> dict[str, float | str]:
     airframe = Airframe(folder, body, SEA_LEVEL)
     if not airframe.powered:
-        notes.add("no autopilot figures: it has no engine, and glides")
-        return {}
+        notes.add("it has no engine, and glides: the autopilot holds its airspeed and its path over the ground, and no height")
     try:
         figures = autopilot_figures(airframe, body)
         known = msgspec.structs.replace(AirParams(), **figures)

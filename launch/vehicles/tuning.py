@@ -16,7 +16,9 @@ from launch.vehicles.linearize import airframe_of
 from launch.vehicles.parameter_lines import SERVICE, with_params
 from uvf.control.design import lateral_loops, longitudinal_loops
 from uvf.control.design.aircraft_loops import OMEGA, Loop
-from uvf.control.design.gain_search import FINAL, GAIN, LATERAL, LONGITUDINAL, PEAK, PHASE, begun, designed
+from uvf.control.design.design_axes import FINAL, LATERAL, LONGITUDINAL
+from uvf.control.design.gain_search import GAIN, PEAK, PHASE, designed
+from uvf.control.design.gain_start import begun
 from uvf.control.design.margins import step_response
 from uvf.control.design.signal_flow import Floats, SignalFlow
 from uvf.models.vehicle.file import load_vehicle

@@ -81,7 +81,7 @@ def generate(rooms: int, seed: int) -> WorldFile:
         borders = _with_doors(list(_borders(cut)), len(cut), rng)
         if borders is not None:
             break
-    bare = _bare(cut, borders, f"A made-up house of {rooms} rooms (uvf world new --rooms {rooms} --seed {seed}).")
+    bare = _bare(cut, borders, f"A made-up house of {rooms} rooms (uvf world new house --rooms {rooms} --seed {seed}).")
     return _furnished(bare, cut, borders, rng)
 
 

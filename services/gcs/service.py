@@ -64,7 +64,7 @@ from services.gcs.orders.commands import Commander
 from services.gcs.orders.offers import SOURCE
 from services.gcs.orders.time_travel import TimeTravel
 from services.gcs.state import past
-from services.gcs.state.history import CLOCK, OBJECTS, RecentHistory
+from services.gcs.state.history import CLOCK, OBJECTS, WINDSOCKS, RecentHistory
 from services.gcs.state.state import Model
 from services.gcs.surveying import SurveyPlanner
 from services.gcs.view.composer import Composer
@@ -129,6 +129,7 @@ class GroundStation(Service):
         processes: list[Processes] = optional(every(topics.PROCESSES.by("*")))
         objects: SimObjects | None = optional(topics.OBJECTS)
         aircraft: SimObjects | None = optional(topics.AIR_OBJECTS)
+        windsocks: FrameTransforms | None = optional(topics.WINDSOCKS)
         health: list[Health] = optional(every(topics.HEALTH.by("*")))
         stop: StopStatus = stop_all()
         external: dict[str, ExternalVehicle] = each_vehicle(topics.EXTERNAL_VEHICLE)
@@ -223,6 +224,7 @@ class GroundStation(Service):
         newest: Mapping[str, Mapping[str, Message]] = {name: getattr(now, name) for name in NEWEST}
         self._hear_system(t, now.clock, now.processes, now.health)
         self._model.tasks = now.tasks
+        self._model.hear_windsocks(now.windsocks)
         self._hear_others(t, now.external, now.stop, (now.objects, now.aircraft), now.truth)
         self._keep(t, now, newest)
         self._model.hear_other_scans(now.other_scans)
@@ -239,7 +241,8 @@ class GroundStation(Service):
         for what, messages in (*newest.items(), (past.EXTERNAL, now.external)):
             self._history.hear(t, what, {name: message for name, message in messages.items() if name in shown})
         self._history.only(shown)
-        alone = {(CLOCK, ""): now.clock, (OBJECTS, "ground"): now.objects, (OBJECTS, "air"): now.aircraft}
+        objects = {(OBJECTS, "ground"): now.objects, (OBJECTS, "air"): now.aircraft}
+        alone = {(CLOCK, ""): now.clock, (WINDSOCKS, ""): now.windsocks, **objects}
         for (what, name), message in alone.items():
             if message is not None:
                 self._history.hear(t, what, {name: message})

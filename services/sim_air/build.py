@@ -16,6 +16,7 @@ from services.sim_air.engine.beginning import as_told, begun
 from services.sim_air.engine.wiring import Controls
 from services.sim_air.environment.ground import GroundSurface
 from services.sim_air.environment.wind import AirMass
+from services.sim_air.environment.windsocks import Windsocks
 from services.sim_air.launcher import AircraftLauncher, standard_air
 from services.sim_air.rangers import Rangers
 from services.sim_air.sensors import Gnss, Imu, PressureSensors
@@ -117,7 +118,8 @@ def _make(site: Scenario, land: Land) -> SimAir:
     around = Around(things, land.ground, on_wheels | {name: one.shape for name, one in joining.items()}, partial(_shape_of, site))
     aircraft = {name: one.aircraft for name, one in joining.items()}
     taken = (*site.members, *(thing.name for thing in things), "floor")
-    return SimAir(AirStage(aircraft, around, taken, partial(_join, site, land)), Faults(site.mission.faults))
+    socks = Windsocks(site.world.windsocks, site.wind, lambda name: site.rng(name, "turbulence"), land.ground.top)
+    return SimAir(AirStage(aircraft, around, taken, partial(_join, site, land), socks), Faults(site.mission.faults))
 
 
 def _join(site: Scenario, land: Land, name: str, model: str, start: StartPose) -> JoiningAircraft:

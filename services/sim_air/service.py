@@ -74,6 +74,7 @@ class SimAir(Service):
         tf_static: dict[str, FrameTransforms] | None = topic(topics.TF_STATIC)
         events: dict[str, list[Event]] | None = topic(topics.EVENTS.by("sim_air"))
         spawned: SimObjects | None = topic(topics.AIR_OBJECTS)
+        windsocks: FrameTransforms | None = topic(topics.WINDSOCKS)
         spawn: list[Reply] = replies(topics.AIR_SPAWN)
         remove: list[Reply] = replies(topics.AIR_REMOVE)
         set_pose: list[Reply] = replies(topics.AIR_POSE)
@@ -85,6 +86,7 @@ class SimAir(Service):
         self._stage = stage
         self._faults = faults or Faults()
         self._spawned_due = Due(topics.AIR_OBJECTS.hz)
+        self._windsocks_due = Due(topics.WINDSOCKS.hz)
         self._had_spawned = False
 
     def step(self, t: float, now: Inputs) -> Outputs:
@@ -110,6 +112,8 @@ class SimAir(Service):
         out.save = [stage.save(n, r) for r in now.save]
         out.restore = [stage.restore(n, r) for r in now.restore]
         out.spawned = self._spawned(t)
+        if self._windsocks_due.at(t):
+            out.windsocks = stage.windsocks.step(t, 1 / topics.WINDSOCKS.hz)
         return out
 
     def _flown(self, t: float) -> float:

@@ -11,6 +11,7 @@ from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, Si
 from services.sim_air.aircraft import Aircraft, SavedAircraft
 from services.sim_air.contact.collisions import Collisions
 from services.sim_air.contact.surroundings import Around
+from services.sim_air.environment.windsocks import Windsocks
 from services.sim_air.placing import fault_of, place, start_of
 from uvf.maths.bvh import Bvh
 from uvf.models.mission import file as mission_file
@@ -48,10 +49,11 @@ class KeptWorld:
 class AirStage:
     """The aircraft of the simulation. Requests are carried out in the order spawn, remove, set pose, save, restore."""
 
-    def __init__(self, aircraft: Mapping[str, Aircraft], around: Around, taken: tuple[str, ...], join: Join) -> None:
+    def __init__(self, aircraft: Mapping[str, Aircraft], around: Around, taken: tuple[str, ...], join: Join, windsocks: Windsocks) -> None:
         """taken: names of what is there from the beginning, of vehicles that others simulate too."""
         self.aircraft = dict(aircraft)
         self.around = around
+        self.windsocks = windsocks
         self.collisions = Collisions(around)
         self.late = 0
         """Steps by which the aircraft's time is behind the clock, because of states that were restored."""
@@ -70,6 +72,7 @@ class AirStage:
         if np.linalg.norm(steady) > STRONGEST:
             return Reply(reason=f"a wind of {np.linalg.norm(steady):.0f} m/s; give {STRONGEST:g} m/s at most")
         self._steady = steady
+        self.windsocks.blow(steady)
         for craft in self.aircraft.values():
             craft.blow(steady)
         return Reply(accepted=True)

@@ -208,7 +208,7 @@ USAGE = {
     ("up", "--rate", "abc"): "invalid value for '--rate': 'abc' is no number; try",
     ("world", "check", "house", "--radius", "20"): "invalid value for '--radius': 20 m is above 10 m; try 'uvf world check --help'",
     ("world", "check", "house", "--radius", "0"): "invalid value for '--radius': 0 m is below 0.01 m; try",
-    ("world", "new", "x", "--rooms", "100"): "invalid value for '--rooms': 100 is above 40; try 'uvf world new --help'",
+    ("world", "new", "house", "x", "--rooms", "100"): "invalid value for '--rooms': 100 is above 40; try 'uvf world new house --help'",
     ("world", "new", "x", "--rooms", "few"): "invalid value for '--rooms': 'few' is no whole number; try",
     ("up", "--rate", "nan"): "invalid value for '--rate': nan: give a number from 0 to 1000; try 'uvf up --help'",
     ("up", "--for", "-5"): "invalid value for '--for': -5: give a number at least 0.01; try 'uvf up --help'",

@@ -11,20 +11,23 @@ import msgspec
 import numpy as np
 import yaml
 
-from benchmarks.autopilot.accuracy.course import Course
+from benchmarks.autopilot.accuracy.course import HIGH, LOW, Course
 from benchmarks.autopilot.accuracy.score import Flight, score
 from launch import catalogue
 from services.autopilot.air.service import AutopilotAir
 from services.sim_air.service import SimAir
 from uvf.control import thesis
 from uvf.maths import rotations
-from uvf.models.scenario import Scenario, load_scenario
+from uvf.models.scenario import ROOT, Scenario, load_scenario
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.vehicle.sensor_presets import PRESETS
 from uvf.runtime.time.lockstep import Lockstep
 
-LONGEST = 1200.0  # s
+LONGEST = 2400.0  # s
 PLANE = "plane"
+WIND, SHARE = 10.0, 0.9  # m/s, from behind; of the climb and the sink that the aircraft has
+UP, DOWN = 600.0, 450.0  # m, of the legs that climb and descend
+STEEPER = 1.3  # than the glide of cruise
 PLACED = ("mount", "frame")  # of a sensor, whatever its preset
 
 
@@ -42,17 +45,30 @@ class Case:
         return wind | ({"turbulence": {"severity": self.severity}} if self.severity else {})
 
 
-def course_site(model: str, case: Case, preset: str, folder: Path) -> tuple[Scenario, Course]:
-    """A mission over the course with the sensors of this preset; those that have none of that name are the vehicle's own."""
+def course_site(model: str, case: Case, preset: str, folder: Path, root: Path = ROOT) -> tuple[Scenario, Course]:
+    """A mission over the course with the sensors of this preset; those that have none of that name are the vehicle's own.
+
+    root: holds ``vehicles`` and ``worlds``; slopes are those that an aircraft of another root than ours can fly.
+    """
     probe = {"model": model, "system_id": 1, "start": {"x": 0.0, "y": 0.0, "z": 100.0}}
     mission: dict[str, Any] = {"about": "accuracy", "world": "empty", "seed": case.seed, "wind": case.wind(), "vehicles": {PLANE: probe}}
     path = folder / "accuracy.yaml"
     path.write_text(yaml.safe_dump(mission))
-    params = load_scenario(path).members[PLANE].params("autopilot_air", AirParams)
-    course = Course(params.trim_airspeed)
+    params = load_scenario(path, root).members[PLANE].params("autopilot_air", AirParams)
+    course = Course(params.trim_airspeed) if root == ROOT else _within_reach(params)
     probe |= course.mission()
     path.write_text(yaml.safe_dump(mission))
-    return _with_sensors(load_scenario(path), preset), course
+    return _with_sensors(load_scenario(path, root), preset), course
+
+
+def _within_reach(params: AirParams) -> Course:
+    """Of slopes that the aircraft can fly with the wind from behind."""
+    whole = Course(params.trim_airspeed)
+    if not params.throttle_climb:
+        return Course(params.trim_airspeed, 0.0, STEEPER * params.idle_sink / params.trim_airspeed)
+    fastest, designed = params.trim_airspeed + WIND, whole.scale * (HIGH - LOW)
+    reached = [SHARE * climb * whole.scale * length / fastest for climb, length in ((params.climb_max, UP), (params.sink_max, DOWN))]
+    return whole if min(reached) >= designed else Course(params.trim_airspeed, min(reached))
 
 
 def _with_sensors(site: Scenario, preset: str) -> Scenario:
@@ -99,10 +115,12 @@ class Probe:
         return Flight(x[:, 0], x[:, 1:4], x[:, 4:7], x[:, 7:9], x[:, 9:13], x[:, 13:15], x[:, 15], x[:, 16])
 
 
-def fly(model: str, case: Case, preset: str = "good", params: Mapping[str, Any] = {}, law: str = "energy") -> tuple[Flight, Course]:
-    """One flight of the course by one of the autopilot's laws of control. Raises BadInput."""
+def fly(
+    model: str, case: Case, preset: str = "good", params: Mapping[str, Any] = {}, law: str = "energy", root: Path = ROOT
+) -> tuple[Flight, Course]:
+    """One flight of the course by one of the autopilot's laws of control; root: as for ``course_site``. Raises BadInput."""
     with tempfile.TemporaryDirectory() as folder:
-        site, course = course_site(model, case, preset, Path(folder))
+        site, course = course_site(model, case, preset, Path(folder), root)
     hosts = catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")])
     lockstep = Lockstep(hosts)
     with closing(lockstep):
@@ -114,9 +132,9 @@ def fly(model: str, case: Case, preset: str = "good", params: Mapping[str, Any] 
     return probe.flight(), course
 
 
-def scored(model: str, case: Case, preset: str, params: Mapping[str, Any], law: str) -> dict[str, float]:
+def scored(model: str, case: Case, preset: str, params: Mapping[str, Any], law: str, root: Path = ROOT) -> dict[str, float]:
     """Figures of one flight; none where it did not fly the course."""
-    flight, course = fly(model, case, preset, params, law)
+    flight, course = fly(model, case, preset, params, law, root)
     try:
         return score(flight, course)
     except ValueError:

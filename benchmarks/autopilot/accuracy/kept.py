@@ -17,7 +17,7 @@ from uvf.models.scenario import ROOT
 
 FOLDER = ROOT / "runs" / "benchmarks"
 FLOWN = tuple(f"benchmarks/autopilot/accuracy/{name}.py" for name in ("course", "flight", "score"))
-PARTS = ("services/autopilot", "services/sim_air", "src/uvf/maths", "src/uvf/runtime", "vehicles", *FLOWN)
+PARTS = ("services/autopilot", "services/sim_air", "src/uvf", "launch/vehicles", "vehicles", *FLOWN)
 Figure = Callable[..., dict[str, Any]]
 
 
@@ -32,8 +32,7 @@ def several(function: Figure, jobs: Sequence[tuple[Any, ...]]) -> Iterator[dict[
 
 def figures_of(function: Figure, job: tuple[Any, ...]) -> dict[str, Any]:
     """``function(*job)``, or what it was when it was last asked for."""
-    name = hashlib.sha256(repr((_sources(inspect.getfile(function)), function.__name__, job)).encode()).hexdigest()[:24]
-    path = FOLDER / f"{function.__name__}-{name}.json"
+    path = FOLDER / f"{function.__name__}-{digest(inspect.getfile(function), repr((function.__name__, job)))}.json"
     if path.exists():
         return dict(json.loads(path.read_text()))
     figures = function(*job)
@@ -42,6 +41,11 @@ def figures_of(function: Figure, job: tuple[Any, ...]) -> dict[str, Any]:
     part.write_text(json.dumps(figures))
     part.rename(path)
     return figures
+
+
+def digest(own: str, key: str) -> str:
+    """Of all that figures come from, with the file ``own`` and what ``key`` tells."""
+    return hashlib.sha256(f"{_sources(own)} {key}".encode()).hexdigest()[:24]
 
 
 @cache

@@ -86,7 +86,7 @@ def _servos(member: MissionVehicle) -> Servos:
     body = member.file.air
     assert body is not None
     moved = (body.controls.aileron, body.controls.elevator, body.controls.rudder, body.controls.flap)
-    return Servos(*(ServoLimits(surface.limit, surface.rate or body.servo_rate or math.inf) for surface in moved))
+    return Servos(*(ServoLimits(surface.limit, surface.rate or body.servo_rate or math.inf, surface.negative_limit) for surface in moved))
 
 
 def _strip(strip: world_file.Strip) -> LandingStrip:

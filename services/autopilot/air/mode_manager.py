@@ -91,8 +91,8 @@ class ModeManager(ActiveMode):
         if isinstance(self._phase, MissionMode):
             self._phase.look(now, params)
         self._move_home(now)
-        if self.landing is not None and self.landing.why_around:
-            self.reason, self.landing.why_around = f"go-around: {self.landing.why_around}", ""
+        if self.landing is not None and self.landing.told:
+            self.reason, self.landing.told = self.landing.told, ""
         if self._phase is not None and self._phase.ended:
             self._end(self._phase)
         if TABLE[self.mode].is_manual:

@@ -142,7 +142,14 @@ class AutopilotAir(Service):
         clearance = self._over_ground.clearance(t, now, self.params.gear_height)
         felt = self._over_ground
         context = FlightContext(
-            self._land.airborne, self._armed, None, self._config.servos, clearance, felt.specific_force_x, felt.specific_force_up
+            self._land.airborne,
+            self._armed,
+            None,
+            self._config.servos,
+            clearance,
+            felt.specific_force_x,
+            felt.specific_force_up,
+            self._safety.must_land,
         )
         self._mode_manager.hear(self._steering.tell(context), 1 / self.hz)
         flown = self._mode_manager.step(now, self._safety.demands(self.params), 1 / self.hz)

@@ -36,13 +36,8 @@ class ManualCommand:
     def sticks(self, servos: Servos) -> StickDeflections:
         """Where the sticks are that ask for these surfaces."""
         s = self.surfaces
-        roll, pitch = _part(s.aileron, servos.aileron.limit), _part(s.elevator, servos.elevator.limit)
-        yaw = _part(s.rudder, servos.rudder.limit)
+        roll, pitch, yaw = servos.aileron.share(s.aileron), servos.elevator.share(s.elevator), servos.rudder.share(s.rudder)
         return StickDeflections(roll, -pitch, -yaw, s.throttle)
-
-
-def _part(deflection: float, stop: float) -> float:
-    return min(max(deflection / stop, -1.0), 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +94,8 @@ class FlightContext:
     """m/s^2, specific force forwards."""
     specific_force_up: float = GRAVITY
     """m/s^2, specific force upwards."""
+    must_land: bool = False
+    """A failsafe has ordered it down, whatever the wind."""
     setpoint: FlightSetpoint | None = None
     """What mode Offboard is asked for; None = nothing fresh."""
     setpoint_from: str = ""

@@ -19,8 +19,8 @@ Key = tuple[str, str]
 LENGTH = 600.0  # s
 BUDGET = 256_000_000  # bytes of messages; with more vehicles or larger maps the history is shorter
 STRETCH = 5.0  # s
-CLOCK, OBJECTS = "clock", "objects"
-OF_NOBODY = (CLOCK, OBJECTS)
+CLOCK, OBJECTS, WINDSOCKS = "clock", "objects", "windsocks"
+OF_NOBODY = (CLOCK, OBJECTS, WINDSOCKS)
 """Kinds that are not of a vehicle."""
 THINNED: Mapping[type[Message], float] = {CompressedImage: 0.5, Grid: 2.0, OctreeMap: 10.0}
 """Least time [s] between two that are kept of these, which are large."""

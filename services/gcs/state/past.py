@@ -4,9 +4,9 @@ from collections.abc import Iterable
 
 from google.protobuf.message import Message
 
-from schemas.messages import Clock, Event, ExternalVehicle, NavState, SimObjects
+from schemas.messages import Clock, Event, ExternalVehicle, FrameTransforms, NavState, SimObjects
 from services.gcs.state.event_log import EventHistory
-from services.gcs.state.history import OBJECTS, Floats, Kept, Key, RecentHistory
+from services.gcs.state.history import OBJECTS, WINDSOCKS, Floats, Kept, Key, RecentHistory
 from services.gcs.state.state import Model
 from uvf.models.scenario import Scenario
 
@@ -61,6 +61,8 @@ class PastModel:
             if isinstance(message, Clock):
                 self.model.clock = None  # another epoch is no new start here
                 self.model.hear_clock(kept.t, message)
+            elif what == WINDSOCKS and isinstance(message, FrameTransforms):
+                self.model.hear_windsocks(message)
             elif isinstance(message, ExternalVehicle):
                 self.model.hear_external_vehicles(kept.t, {name: message})
             elif not isinstance(message, SimObjects):

@@ -10,6 +10,7 @@ from schemas.messages import (
     Clock,
     Event,
     ExternalVehicle,
+    FrameTransforms,
     LaserScan,
     NavState,
     Odometry,
@@ -32,7 +33,7 @@ from uvf.models.mission.file import StartPose, Vehicle
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.messages.convert import seconds
+from uvf.runtime.messages.convert import seconds, wxyz
 from uvf.runtime.messages.maps.mapped_floor import MappedFloor
 from uvf.runtime.messages.spawned import SPAWNED_MOST, name_fault, object_fault
 from uvf.runtime.state.stop_all import StopStatus, name_of, told
@@ -41,6 +42,7 @@ Floats = NDArray[np.float64]
 
 GONE_AFTER = 5.0  # s: a page that has shown nothing new for so long has nobody before it
 MOST_VEHICLES = 64
+UNIT = 1e-3  # by which a rotation's length may be off
 LONGEST_TEXT = 500  # letters of an event or of what an external vehicle says of itself
 SHOWN_BY_THE_CLOCK = ("conductor",)
 """Sources whose warnings tell of a state that the page reads from the clock: they stand in the log, not as notices."""
@@ -77,6 +79,8 @@ class Model:
         self.refused = PageRefusals(self._warn)
         self.processes = ProcessBook(self.refused)
         self.graph = GraphBook(self.processes, self.refused)
+        self.windsocks: Mapping[str, Floats] = {}
+        """Where those of the world point: attitudes wxyz (4,), world from sock."""
         self._external = ExternalVehicles()
         self.plots = PlotBook()
 
@@ -184,6 +188,12 @@ class Model:
         told = (thing for one in lists if one is not None for thing in one.objects)
         self.spawned = [thing for thing in told if self._is_sound(thing)][:SPAWNED_MOST]
         self.strangers = {name: state for name, state in truth.items() if name not in self.vehicles}
+
+    def hear_windsocks(self, told: FrameTransforms | None) -> None:
+        """Takes where the windsocks of the world point; others, and what is no attitude, are ignored."""
+        known = {sock.name for sock in self.site.world.windsocks}
+        here = {one.child_frame_id: wxyz(one.rotation) for one in (told.transforms if told is not None else ())}
+        self.windsocks = {name: at for name, at in here.items() if name in known and abs(np.linalg.norm(at) - 1) < UNIT}
 
     def is_external(self, name: str) -> bool:
         """Whether no mission names the vehicle."""

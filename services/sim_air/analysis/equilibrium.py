@@ -10,14 +10,13 @@ import numpy as np
 from scipy.optimize import root
 
 from services.sim_air.engine.states import Held
-from services.sim_air.engine.trim import Trim, solve
+from services.sim_air.engine.trim import NEARLY, Trim, solve
 from services.sim_air.engine.wiring import Controls
 from uvf.maths import rotations
 from uvf.maths.rotations import Floats
 
 STATES = ("u", "v", "w", "p", "q", "r", "phi", "theta", "psi", "h")
 INPUTS = ("delta_a", "delta_e", "delta_r", "delta_t")
-TOLERANCE = 1e-4  # m/s^2 and rad/s^2
 UNKNOWN = ("airspeed", "alpha", "climb", "roll", "aileron", "elevator", "rudder", "throttle")
 
 
@@ -103,6 +102,6 @@ def find(body: FlightModel, given: Condition, fixed: tuple[str, str]) -> Conditi
         return derivatives(body, tried.state, tried.inputs)[:6]
 
     found = root(left, [getattr(given, name) for name in free], method="hybr", options={"eps": 1e-6, "xtol": 1e-10})
-    if np.abs(found.fun).max() > TOLERANCE:
+    if np.abs(found.fun).max() > NEARLY:
         return None
     return replace(given, **dict(zip(free, found.x.tolist(), strict=True)))

@@ -11,7 +11,7 @@ from services.sim_air.engine.airframe import Airframe
 from services.sim_air.engine.states import Held
 from services.sim_air.engine.wiring import Controls
 from uvf.maths.geodesy import GRAVITY
-from uvf.models.vehicle.air import AirBody
+from uvf.models.vehicle.air import AirBody, Surface
 from uvf.models.vehicle.battery import lasts
 from uvf.models.yaml_data import BadInput
 
@@ -42,7 +42,7 @@ def performance(airframe: Airframe, body: AirBody, altitude: float) -> Performan
     Gliding is with the motor off. What the elevator cannot balance is left out.
     """
     flown = glides(airframe, body, altitude)
-    climbs = list(_sweep(airframe, Condition(body.trim_speed, altitude, throttle=1.0, climb=0.1), body.controls.elevator.limit))
+    climbs = list(_sweep(airframe, Condition(body.trim_speed, altitude, throttle=1.0, climb=0.1), body.controls.elevator))
     slowest = min(flown, key=lambda c: c.airspeed)
     alpha, stall_speed = stall(airframe, body.trim_speed, altitude)
     power, cruise = min(_level(airframe, body, [slowest.airspeed * s for s in POWER_SPEEDS], altitude), key=lambda found: found[0])
@@ -64,11 +64,11 @@ def glides(airframe: Airframe, body: AirBody, altitude: float) -> list[Condition
 
     Raises BadInput when there is none.
     """
-    limit = body.controls.elevator.limit
-    found = list(_sweep(airframe, Condition(body.trim_speed, altitude, throttle=0.0, climb=-0.1), limit))
+    elevator = body.controls.elevator
+    found = list(_sweep(airframe, Condition(body.trim_speed, altitude, throttle=0.0, climb=-0.1), elevator))
     if not found:
         raise BadInput(f"{body.model}: no steady glide at {altitude:g} m was found")
-    stop = find(airframe, replace(found[-1], elevator=-limit), ("elevator", "throttle"))
+    stop = find(airframe, replace(found[-1], elevator=elevator.lowest()), ("elevator", "throttle"))
     return found if stop is None else [*found, stop]
 
 
@@ -82,12 +82,12 @@ def glide_ratio(flight: Condition) -> float:
     return -1 / math.tan(flight.climb)
 
 
-def _sweep(airframe: Airframe, begin: Condition, limit: float) -> Iterator[Condition]:
+def _sweep(airframe: Airframe, begin: Condition, elevator: Surface) -> Iterator[Condition]:
     """One flight for each angle of attack that is balanced at this throttle, each found from the one before."""
     near = begin
     for alpha in ALPHAS:
         found = find(airframe, replace(near, alpha=alpha), ("alpha", "throttle"))
-        if found is not None and found.airspeed > 0 and abs(found.elevator) <= limit and abs(found.climb) < math.pi / 2:
+        if found is not None and found.airspeed > 0 and abs(elevator.norm(found.elevator)) <= 1 and abs(found.climb) < math.pi / 2:
             near = found
             yield found
 
@@ -115,6 +115,6 @@ def _level(airframe: Airframe, body: AirBody, speeds: Sequence[float], altitude:
     avionics = body.battery.avionics if body.battery else 0.0
     for airspeed in sorted(speeds, reverse=True):
         found = find(airframe, replace(near, airspeed=airspeed), ("airspeed", "climb"))
-        if found is not None and 0 <= found.throttle <= 1 and abs(found.elevator) <= body.controls.elevator.limit:
+        if found is not None and 0 <= found.throttle <= 1 and abs(body.controls.elevator.norm(found.elevator)) <= 1:
             near = found
             yield airframe.motor_power + avionics, found

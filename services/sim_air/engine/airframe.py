@@ -103,9 +103,10 @@ class Airframe:
             flight = "level flight" if start.path == FlightPath(start.airspeed) else "climb or turn like this"
             raise BadInput(f"{self._path}: no {flight} at {start.airspeed} m/s: {trim.lacks}")
         for name in ("aileron", "elevator", "rudder"):
-            limit = getattr(self._body.controls, name).limit
-            if abs(needed := getattr(trim, name)) > limit:
-                raise BadInput(f"{self._path}: at {start.airspeed} m/s it needs {needed:.2f} rad of {name}; the limit is {limit:g} rad")
+            surface, needed = getattr(self._body.controls, name), getattr(trim, name)
+            if abs(surface.norm(needed)) > 1 or (needed and not surface.limit):
+                reaches = f"it goes from {surface.lowest():g} to {surface.limit:g} rad"
+                raise BadInput(f"{self._path}: at {start.airspeed} m/s it needs {needed:.2f} rad of {name}; {reaches}")
         return trim
 
     def stand(self, place: InitialState) -> None:

@@ -4,9 +4,10 @@ import math
 import re
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple, Protocol
 
-from uvf.models.vehicle.air import STANDARD_JOINTS, AirBody, JointReading, Surface, unnumbered
+from uvf.models.vehicle.air import STANDARD_JOINTS, AirBody, JointReading, Lever, Surface, unnumbered
 from uvf.models.yaml_data import BadInput, FileLocation, nearest
 
 THROTTLE = re.compile(r"fcs/throttle-cmd-norm(\[\d+\])?")
@@ -57,6 +58,18 @@ class Properties(Protocol):
     def __setitem__(self, name: str, value: float) -> None: ...
 
 
+class CommandLine(NamedTuple):
+    """A field of Controls, the property that it is written to, and how."""
+
+    name: str
+    target: str
+    command: Callable[[float], float]
+
+
+def _norm(control: Surface | Lever, value: float) -> float:
+    return control.sign * control.norm(value) if isinstance(control, Surface) else value
+
+
 class Wiring:
     """Maps the controls of one aircraft to the model's properties."""
 
@@ -66,7 +79,8 @@ class Wiring:
         self._known = known
         self._lines = [line for name in body.controls.__struct_fields__ for line in self._command(name, body, place.at("controls", name))]
         if STEERING in known and STEERING not in (line[1] for line in self._lines):
-            self._lines.append(("rudder", STEERING, -1 / body.controls.rudder.limit))
+            rudder = body.controls.rudder
+            self._lines.append(CommandLine("rudder", STEERING, lambda deflection: -rudder.norm(deflection)))
         self._joints = list(self._readers(body, place.at("joints")))
         if body.battery is not None and body.battery.power is not None:
             self._there(body.battery.power, place.at("battery", "power"))
@@ -75,8 +89,8 @@ class Wiring:
 
     def write(self, controls: Controls) -> None:
         """Writes deflections, throttle and brake."""
-        for name, target, scale in self._lines:
-            self._properties[target] = getattr(controls, name) * scale
+        for name, target, command in self._lines:
+            self._properties[target] = command(getattr(controls, name))
 
     def set_up(self) -> None:
         """Writes the settings, which the engine forgets at each start."""
@@ -87,17 +101,16 @@ class Wiring:
         """Angles of the surfaces and speeds of the propellers."""
         return [read() for read in self._joints]
 
-    def _command(self, name: str, body: AirBody, place: FileLocation) -> list[tuple[str, str, float]]:
-        """(command, property, factor) of one command; standard names that the model has not are left out."""
+    def _command(self, name: str, body: AirBody, place: FileLocation) -> list[CommandLine]:
+        """Standard names that the model has not are left out."""
         control = getattr(body.controls, name)
-        scale = control.norm(control.sign) if isinstance(control, Surface) else 1.0
         if control.property:
             targets = [self._there(target, place.at("property")) for target in body.controls.properties(name)]
         elif name == "throttle":
             targets = [target for target in self._known if THROTTLE.fullmatch(target)]
         else:
             targets = [target for target in body.controls.properties(name) if target in self._known]
-        return [(SIDES.get(target, name), target, scale) for target in targets]
+        return [CommandLine(SIDES.get(target, name), target, partial(_norm, control)) for target in targets]
 
     def _there(self, name: str, place: FileLocation) -> str:
         plain = name.replace("[0]", "")

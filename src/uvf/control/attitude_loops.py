@@ -23,7 +23,7 @@ class PitchLoop:
     """Pitch to the elevator, with its integrator."""
 
     def __init__(self, servos: Servos) -> None:
-        self._trim, self._limit = SurfaceTrim(servos.elevator), servos.elevator.limit
+        self._trim, self._limit = SurfaceTrim(servos.elevator), -servos.elevator.lowest
         self._alpha: float | None = None
         self._share = TURN_SHARE[1]
 
@@ -74,6 +74,7 @@ class AttitudeLoops:
         self._roll = SurfaceTrim(servos.aileron)
         self._pitch = PitchLoop(servos)
         self._slip = SurfaceTrim(servos.rudder)
+        self._steered = 0.0
 
     def step(self, cycle: Cycle, wanted: AttitudeSetpoint) -> Surfaces:
         """Surface deflections [rad] and throttle [0..1] for one cycle; bank, pitch and throttle asked for are limited first."""
@@ -92,15 +93,18 @@ class AttitudeLoops:
     def _rudder(self, cycle: Cycle, aileron: float, given: float | None) -> float:
         """Holds the rate of a coordinated turn, damps what differs from it, and goes with the aileron against its adverse yaw.
 
-        Takes out the side force slowly, unless a rudder is given.
+        Takes out slowly the side force of slipping, unless a rudder is given: what is felt less the force of the rudder itself, which is
+        the larger one of a slender aircraft, and of the other sign.
         """
         now, params = cycle.now, cycle.params
         turning = GRAVITY / cycle.speed * math.sin(now.roll) * math.cos(now.pitch)
         damping = cycle.scale * params.yaw_damping * (now.r - turning)
         if given is not None:
-            return clip(damping + given, self._servos.rudder.limit)
+            return self._servos.rudder.within(damping + given)
         ahead = params.rudder_mix * aileron
-        return self._slip.step(damping + ahead, cycle.scale, params.slip_i * now.side_force, cycle.dt)
+        slipping = now.side_force - params.rudder_force / cycle.scale * self._steered
+        self._steered = self._slip.step(damping + ahead, cycle.scale, params.slip_i * slipping, cycle.dt)
+        return self._steered
 
 
 def _pull(cycle: Cycle, load: float) -> float:

@@ -14,13 +14,13 @@ class Saturation:
     """How long each surface has been at its stop; it counts as free again after as long away from the stop as it was at it."""
 
     def __init__(self, servos: Servos) -> None:
-        self._stops = {name: getattr(servos, name).limit for name in ("aileron", "elevator", "rudder")}
-        self._times = dict.fromkeys(self._stops, 0.0)
+        self._servos = servos
+        self._times = dict.fromkeys(("aileron", "elevator", "rudder"), 0.0)
 
     def step(self, surfaces: Surfaces, dt: float) -> None:
         """Takes the commanded surfaces [rad] of one cycle of ``dt`` [s]."""
         for name, time in self._times.items():
-            stopped = abs(getattr(surfaces, name)) >= AT_STOP * self._stops[name]
+            stopped = abs(getattr(self._servos, name).share(getattr(surfaces, name))) >= AT_STOP
             self._times[name] = time + dt if stopped else max(time - dt, 0.0)
 
     @property

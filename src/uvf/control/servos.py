@@ -11,10 +11,25 @@ TRIM_SHARE = 0.45  # of a surface's way that its integrator may take
 
 @dataclass(frozen=True)
 class ServoLimits:
-    """Deflection and rate limit of a surface, the same to both sides."""
+    """Deflection and rate limit of a surface."""
 
     limit: float  # rad
-    rate: float = math.inf  # rad/s
+    rate: float = math.inf  # rad/s, the same to both sides
+    negative_limit: float | None = None  # rad; None: ``limit``
+
+    @property
+    def lowest(self) -> float:
+        """The most negative deflection [rad]."""
+        return -(self.limit if self.negative_limit is None else self.negative_limit)
+
+    def within(self, deflection: float) -> float:
+        """The nearest deflection [rad] within the stops."""
+        return min(max(deflection, self.lowest), self.limit)
+
+    def share(self, deflection: float) -> float:
+        """Of the way to the stop, -1 to 1; 0 where there is no such surface."""
+        full = self.limit if deflection >= 0 else -self.lowest
+        return min(max(deflection / full, -1.0), 1.0) if full else 0.0
 
 
 @dataclass(frozen=True)
@@ -36,7 +51,7 @@ class SurfaceTrim:
 
     def __init__(self, servo: ServoLimits) -> None:
         self._servo = servo
-        self._trim = Integral(TRIM_SHARE * servo.limit)
+        self._trim = Integral(TRIM_SHARE * min(servo.limit, -servo.lowest))
         self._reached: float | None = None  # rad, where the servo is at best
 
     @property
@@ -49,14 +64,13 @@ class SurfaceTrim:
 
         ``rate`` [rad/s] is the integrator's input over ``dt`` [s], unless it has to wait.
         """
-        limit = self._servo.limit
         if self._lacks(moving + effect * self._trim.value, dt) * effect * rate <= 0:
             self._trim.step(rate, dt)
-        return clip(moving + effect * self._trim.value, limit)
+        return self._servo.within(moving + effect * self._trim.value)
 
     def _lacks(self, asked: float, dt: float) -> float:
         """rad that the surface cannot give of what is asked."""
-        target, most = clip(asked, self._servo.limit), self._servo.rate * dt
+        target, most = self._servo.within(asked), self._servo.rate * dt
         if self._reached is None or abs(target - self._reached) <= most:
             self._reached = target  # not by adding the difference, whose rounding would be taken for something that is lacking
         else:

@@ -7,7 +7,7 @@ so nothing winds up at its stops.
 
 Pitch holds the path, for gusts would shake it through the airspeed, as long as throttle makes the energy that path and airspeed need
 together. What it cannot make is taken from the airspeed for a while, then from the path: in a long climb, or with the motor dead,
-the airspeed comes first.
+the airspeed comes first. An aircraft without an engine (``throttle_climb`` 0) always glides so.
 """
 
 import math
@@ -82,7 +82,8 @@ class EnergyLoops:
             self._trim.step(cycle.params.climb_i * error, cycle.dt)
         level = level_throttle(cycle, self._airspeed(cycle, wanted))
         setting = level + _slope(cycle) * (asked.climb + asked.faster - self._power.unexplained)
-        self._throttle = min(max(setting, 1 - _room(cycle)), 1.0) if wanted.throttle is None else wanted.throttle
+        free = min(max(setting, 1 - _room(cycle)), 1.0) if cycle.params.throttle_climb else 0.0
+        self._throttle = free if wanted.throttle is None else wanted.throttle
         return max(min(pitch, cycle.highest_pitch), lowest), self._throttle
 
     def _asked(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> Power:
@@ -147,6 +148,8 @@ def made(cycle: Cycle, throttle: float) -> float:
 
     Below that less throttle brakes no more. Believing otherwise the observer would take an idling motor for a strong one.
     """
+    if not cycle.params.throttle_climb:
+        return -cycle.params.idle_sink
     return max((throttle - level_throttle(cycle, cycle.speed)) / _slope(cycle), -cycle.params.idle_sink)
 
 

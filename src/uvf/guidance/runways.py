@@ -57,6 +57,10 @@ class Runway:
         """Tailwind [m/s] along the landing direction."""
         return now.wind_north * self.along[0] + now.wind_east * self.along[1]
 
+    def crosswind(self, now: Estimate) -> float:
+        """Wind [m/s] across the landing direction, to the right of it."""
+        return now.wind_east * self.along[0] - now.wind_north * self.along[1]
+
     def before(self, distance: float, aside: float = 0.0) -> Point:
         """Point (north, east [m]) at ``distance`` [m] before the aiming point and ``aside`` [m] to the right."""
         cn, ce = self.along

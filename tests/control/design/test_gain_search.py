@@ -7,7 +7,8 @@ import pytest
 
 from uvf.control.design.aircraft_loops import AircraftLoops
 from uvf.control.design.flight_condition import ActuatorDelays, FlightCondition
-from uvf.control.design.gain_search import GAIN, PEAK, PHASE, begun, designed
+from uvf.control.design.gain_search import GAIN, PEAK, PHASE, designed
+from uvf.control.design.gain_start import begun
 from uvf.maths.state_space import StateSpace
 from uvf.models.vehicle.flight_params import AirParams
 

@@ -16,7 +16,7 @@ def flow(gain, delay=0.0, lag=0.0, pole=0.0):
     made.opens("asked")
     made.integral("x", {"x": pole, "given": 1.0, "gust": 1.0})
     made.equal("asked", {"x": -gain})
-    made.lag("given", lag, {"asked": np.exp(-delay * S)})
+    made.lag("given", lag, {"asked": made.dead_time(delay)})
     return made
 
 
@@ -43,6 +43,15 @@ def test_loop_and_responses_are_those_of_the_transfer_functions():
 )
 def test_poles_on_the_right_are_counted(gain, delay, lag, pole, unstable):
     assert flow(gain, delay, lag, pole).unstable == unstable
+
+
+@pytest.mark.parametrize(("slow", "unstable"), [((1e-3, 2e-4), 0), ((1e-3, -2e-4), 1), ((-1e-3, -2e-4), 2)])
+def test_poles_slower_than_the_frequencies_are_counted_too(slow, unstable):
+    made = SignalFlow(OMEGA, ("x", "y", "z"))
+    for name, pole in zip("xy", slow, strict=True):
+        made.integral(name, {name: -pole})
+    made.integral("z", {"z": -2.0, "x": 1.0, "y": 1.0})
+    assert made.unstable == unstable
 
 
 def test_what_the_margins_say_is_where_it_becomes_unstable():

@@ -17,6 +17,7 @@ from services.sim_air.contact.surroundings import Around
 from services.sim_air.engine.states import Air, AircraftMotion
 from services.sim_air.engine.wiring import Controls, JointAngle
 from services.sim_air.environment.ground import LEVEL
+from services.sim_air.environment.windsocks import Windsocks
 from services.sim_air.sensors import Imu
 from services.sim_air.service import SimAir
 from services.sim_air.stage import AirStage
@@ -26,6 +27,7 @@ from uvf.maths import rotations
 from uvf.maths.rotations import IDENTITY
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
+from uvf.models.world.wind import Wind
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.convert import wxyz
@@ -73,6 +75,7 @@ class Glider:
 EMPTY = Around([], LEVEL, {"g": MILVUS_TREE}, {}.__getitem__)
 
 
+NO_SOCKS = Windsocks((), Wind(), lambda name: None, lambda x, y: 0.0)
 NOTHING_ASKED = {name: [] for name in SimAir.requests}
 
 
@@ -84,7 +87,7 @@ def glider():
 
 
 def simulator(craft):
-    return SimAir(AirStage({"g": craft}, Around([], LEVEL, {"g": MILVUS_TREE}, {}.__getitem__), (), None))
+    return SimAir(AirStage({"g": craft}, Around([], LEVEL, {"g": MILVUS_TREE}, {}.__getitem__), (), None, NO_SOCKS))
 
 
 def run_two(tmp_path, until=3.0):

@@ -58,6 +58,8 @@ class FailsafeMonitor:
         self._in_force = FenceInForce()
         self.breaches = 0
         """How often it has been outside of a fence."""
+        self.must_land = False
+        """A failsafe has ordered it down."""
 
     def hear(self, t: float, link: Link | None, battery: Battery | None) -> None:
         """Takes what comes from outside at ``t`` [s], before each step."""
@@ -99,6 +101,8 @@ class FailsafeMonitor:
         self._keep_fence(params)
         known = self._known(seen, params)
         changes, order = self.watch.step(known, dt)
+        in_force = self.watch.in_force(known)
+        self.must_land = in_force is not None and in_force.action >= FailsafeAction.LAND
         self.breaches += any(change.began and change.rule.name == "breach" for change in changes)
         committed = self._mode_manager.is_committed(seen.now)
         if self._mode_manager.is_blind != self._was_blind or (self._waits and not committed):

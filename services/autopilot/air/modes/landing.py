@@ -25,6 +25,7 @@ from uvf.models.vehicle.flight_params import AirParams
 FINAL_TIME = 25.0  # s at the lowest airspeed: the length of the final approach
 ON_CIRCLE = 5.0  # m of height, with which it may be left
 MOST_TAILWIND = 1.5  # m/s, with which it lands
+EASED = 0.9  # of crosswind_max, from which on it lands that has waited for less
 ALIGNED = 0.3  # rad, of the course on leaving the circle
 GUST_SHARE, GUST_MOST = 0.4, 0.2  # of the wind, of min_airspeed: what is added to it on the approach
 COMMITTED = 12.0  # m: below it, without satellites, it is landed by dead reckoning
@@ -76,7 +77,9 @@ class LandingMode(FlightPhase):
         self.lane = choose(now)
         self._approach = approach
         self._choose = choose
-        self.why_around = ""
+        self.told = ""
+        """What is new: why it goes around or waits, until it has been read."""
+        self._waits = False
         self._senses = context
         self._length = FINAL_TIME * params.min_airspeed if approach is None else approach.length
         self._wheels = WheelHeight(self.lane.aim.height)
@@ -106,7 +109,7 @@ class LandingMode(FlightPhase):
     def around(self, why: str) -> None:
         """Goes around; ``why`` is told."""
         if not self.rolls:
-            self.why_around = why
+            self.told = f"go-around: {why}"
             self._to(LandingStage.AROUND)
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
@@ -148,11 +151,23 @@ class LandingMode(FlightPhase):
         circle = self._circle
         distance, right = self.lane.locate(now)
         lead = abs(distance - self._length) < 0.4 * abs(circle.radius) and abs(right) < 0.2 * abs(circle.radius)
-        if lead and abs(self.lane.off(now.course)) < ALIGNED and abs(now.height - circle.centre.height) < ON_CIRCLE:
+        at_exit = lead and abs(self.lane.off(now.course)) < ALIGNED and abs(now.height - circle.centre.height) < ON_CIRCLE
+        if at_exit and not self._is_windy(now, params):
             self._to(LandingStage.FINAL)
         near = now.height < circle.centre.height + 2 * ON_CIRCLE and circle.is_captured(now)  # slow, it could not turn in
         airspeed = self._airspeed(now, params) if near else params.trim_airspeed
         return Setpoint(PathSetpoint(circle.aim(now, params), circle.centre.height, 0.0, airspeed), params.land_flap if near else 0.0)
+
+    def _is_windy(self, now: Estimate, params: AirParams) -> bool:
+        """Whether it stays on the circle, because more wind blows across the lane than it may be landed in."""
+        across = abs(self.lane.crosswind(now))
+        windy = not self._senses.must_land and across > params.crosswind_max * (EASED if self._waits else 1.0)
+        if windy and not self._waits:
+            self.told = f"it waits on the circle: {across:.1f} m/s of crosswind, crosswind_max is {params.crosswind_max:g} m/s"
+        elif self._waits and not windy:
+            self.told = f"it lands: {across:.1f} m/s of crosswind"
+        self._waits = windy
+        return windy
 
     def _final(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         distance, right = self.lane.locate(now)

@@ -148,8 +148,8 @@ class ManualControl:
         limits = body.controls
         self._line.commands["surfaces"] = SurfaceCommand(
             timestamp=stamp(self._line.latest.sim_time),
-            aileron=sticks.roll * limits.aileron.limit,
-            elevator=sticks.pitch * limits.elevator.limit,
-            rudder=-sticks.yaw * limits.rudder.limit,
+            aileron=limits.aileron.deflection(sticks.roll),
+            elevator=limits.elevator.deflection(sticks.pitch),
+            rudder=limits.rudder.deflection(-sticks.yaw),
             throttle=max(sticks.throttle, 0.0),
         )

@@ -94,8 +94,8 @@ def _surfaces(facts: VehicleInfo, asked: SurfaceCommand) -> list[int]:
     if facts.file.air is None:
         return []
     limits = facts.file.air.controls
-    around = {name: getattr(asked, name) / getattr(limits, name).limit for name in ("aileron", "elevator", "rudder")}
-    up = {"throttle": asked.throttle, "flap": asked.flap / limits.flap.limit, "brake": asked.brake}
+    around = {name: getattr(limits, name).norm(getattr(asked, name)) for name in ("aileron", "elevator", "rudder")}
+    up = {"throttle": asked.throttle, "flap": limits.flap.norm(asked.flap), "brake": asked.brake}
     parts = {**around, **{name: 2 * part - 1 for name, part in up.items()}}
     return [_pulse(parts[name]) for name in ("aileron", "elevator", "throttle", "rudder", "flap", "brake")]
 

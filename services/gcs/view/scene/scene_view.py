@@ -17,6 +17,7 @@ from services.gcs.view.scene.node_cache import NodeCache
 from services.gcs.view.scene.scenery import coloured, moving, places_of, rgb_of, scenery
 from services.gcs.view.scene.spawned import Spawned
 from services.gcs.view.scene.way_layers import WayLayers
+from services.gcs.view.scene.windsocks import sock_nodes, sock_places
 from uvf.models.aircraft.shape import AircraftShape, aircraft_shape
 from uvf.models.shapes.mesh_parts import MeshPart
 from uvf.models.urdf.model import load_urdf
@@ -37,6 +38,7 @@ class SceneView:
         self._nodes = NodeCache()
         self._maps, self._estimates, self._ways = MapLayers(self._nodes), EstimateLayers(self._nodes), WayLayers(self._nodes)
         self._surroundings = scenery(model.site.world)
+        self._surroundings |= sock_nodes(model.site.world.windsocks)
         self._scripted = moving(model.site.world)
         self._bodies: dict[str, dict[str, Node]] = {}
         self._ghosts: dict[str, dict[str, Node]] = {}
@@ -70,6 +72,7 @@ class SceneView:
         self._learn()
         layers = self._model.layers
         placed = places_of(self._scripted, self._model.sim_time) | self._spawned.places()
+        placed |= sock_places(self._model.site.world.windsocks, self._model.windsocks)
         for v in self._model.vehicles.values():
             if v.place is not None:
                 placed[f"/vehicles/{v.name}"] = v.place

@@ -62,24 +62,23 @@ class AircraftLoops:
 
 
 def loops(flight: FlightCondition, delays: ActuatorDelays, params: AirParams, powered: bool = True) -> Iterator[Loop]:
-    """Every loop at one airspeed; without an engine there is none of airspeed."""
-    lateral = lateral_loops.lateral_flow(OMEGA, flight, delays, params)
-    longitudinal = longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, params, given_throttle=not powered)
-    for flow, opened in ((lateral, lateral_loops.LOOPS), (longitudinal, longitudinal_loops.LOOPS)):
-        yield from _of(flow, opened, flight.airspeed, powered)
+    """Every loop at one airspeed; without an engine pitch holds the airspeed, on the final approach, too."""
+    yield from _of(lateral_loops.lateral_flow(OMEGA, flight, delays, params), lateral_loops.LOOPS, flight)
+    if powered:
+        yield from _of(longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, params), longitudinal_loops.LOOPS, flight)
+    else:
+        yield from _of(longitudinal_loops.gliding_flow(OMEGA, flight, delays, params), longitudinal_loops.GLIDING, flight)
     if flight.airspeed < FINAL_UP_TO * params.trim_airspeed:
         final = on_final(params)
-        lateral = lateral_loops.lateral_flow(OMEGA, flight, delays, final)
-        longitudinal = longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, final, given_throttle=not powered)
-        for flow, opened in ((lateral, lateral_loops.ON_FINAL), (longitudinal, longitudinal_loops.ON_FINAL)):
-            yield from _of(flow, opened, flight.airspeed, powered)
+        yield from _of(lateral_loops.lateral_flow(OMEGA, flight, delays, final), lateral_loops.ON_FINAL, flight)
+        if powered:
+            yield from _of(longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, final), longitudinal_loops.ON_FINAL, flight)
 
 
-def _of(flow: SignalFlow, opened: dict[str, str], airspeed: float, powered: bool) -> Iterator[Loop]:
+def _of(flow: SignalFlow, opened: dict[str, str], flight: FlightCondition) -> Iterator[Loop]:
     stable = flow.unstable == 0
     for name, at in opened.items():
-        if name != "airspeed" or powered:
-            yield Loop(name, airspeed, margins(flow.omega, flow.loop(at)), stable)
+        yield Loop(name, flight.airspeed, margins(flow.omega, flow.loop(at)), stable)
 
 
 def _another(flight: FlightCondition, rng: np.random.Generator) -> FlightCondition:

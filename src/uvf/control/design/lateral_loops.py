@@ -64,7 +64,7 @@ def _roll(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
 
 def _yaw(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
     scale = _scale(flight, params)
-    flow.integral("slip_trim", {"side_force": params.slip_i})
+    flow.integral("slip_trim", {"side_force": params.slip_i, "rudder_asked": -params.slip_i * params.rudder_force / scale})
     turning = GRAVITY / flight.airspeed  # rad/s per rad of bank
     damped = {"r_felt": scale * params.yaw_damping, "phi": -scale * params.yaw_damping * turning, "slip_trim": scale}
     flow.equal("rudder_asked", damped | {"aileron_asked": params.rudder_mix})

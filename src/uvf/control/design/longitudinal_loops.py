@@ -1,9 +1,10 @@
 """Pitch, height and airspeed of ``attitude_loops`` and ``total_energy``, linear about level flight."""
 
 import math
+from collections.abc import Mapping
 
 from uvf.control.design.flight_condition import AIRSPEED_TIME, GYRO_TIME, ActuatorDelays, FlightCondition
-from uvf.control.design.signal_flow import Floats, SignalFlow
+from uvf.control.design.signal_flow import Floats, SignalFlow, Terms
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -16,25 +17,43 @@ SIGNALS = (
 INPUTS = ("gust_u", "gust_w", "gust_q")
 IN_AIR = {"u": ("u", "w"), "w": ("u", "w"), "q": ("u", "w", "q")}
 LOOPS = {"height": "pitch", "pitch": "elevator_asked", "airspeed": "throttle_asked"}
+GLIDING = {"airspeed": "pitch", "pitch": "elevator_asked"}
 ON_FINAL = {"flare": "pitch", "flare pitch": "elevator_asked"}
 """Where each is opened."""
 
 
-def longitudinal_flow(
-    omega: Floats, flight: FlightCondition, delays: ActuatorDelays, params: AirParams, given_throttle: bool = False
-) -> SignalFlow:
-    """The closed loops at omega (k,) [rad/s]; angles [rad], speeds [m/s], ``h`` [m]; given_throttle: as on the final approach."""
+def longitudinal_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
+    """The closed loops at omega (k,) [rad/s]; angles [rad], speeds [m/s], ``h`` [m]."""
     flow = SignalFlow(omega, SIGNALS, INPUTS)
     flow.opens(*LOOPS.values())
-    _airframe(flow, flight)
-    flow.actuator("e", "elevator_asked", delays.elevator, delays.dead_time)
-    flow.actuator("t", None if given_throttle else "throttle_asked", delays.throttle, delays.dead_time)
-    flow.lag("q_felt", GYRO_TIME, {"q": 1.0})
-    flow.lag("airspeed_felt", AIRSPEED_TIME, {"airspeed": 1.0})
-    _height(flow, flight, params)
-    _pitch(flow, flight, params)
+    _inner(flow, flight, delays, params)
+    flow.actuator("t", "throttle_asked", delays.throttle, delays.dead_time)
+    flow.integral("h", {"climb": 1.0})
+    _path(flow, flight, params, {"h": -params.altitude_p})
     _energy(flow, flight, params)
     return flow
+
+
+def gliding_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
+    """The closed loops of an aircraft without an engine: pitch holds the airspeed, and no height."""
+    flow = SignalFlow(omega, SIGNALS, INPUTS)
+    flow.opens(*GLIDING.values())
+    _inner(flow, flight, delays, params)
+    height = flight.airspeed / GRAVITY
+    flow.equal("h", {})  # what the density changes is slower than all else
+    _path(flow, flight, params, {"airspeed_felt": height * params.airspeed_p, "unexplained": 1.0})
+    _observer(flow, flight, params, {})
+    flow.equal("throttle_asked", {})
+    flow.actuator("t", None, delays.throttle, delays.dead_time)
+    return flow
+
+
+def _inner(flow: SignalFlow, flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> None:
+    _airframe(flow, flight)
+    flow.actuator("e", "elevator_asked", delays.elevator, delays.dead_time)
+    flow.lag("q_felt", GYRO_TIME, {"q": 1.0})
+    flow.lag("airspeed_felt", AIRSPEED_TIME, {"airspeed": 1.0})
+    _pitch(flow, flight, params)
 
 
 def _airframe(flow: SignalFlow, flight: FlightCondition) -> None:
@@ -42,14 +61,14 @@ def _airframe(flow: SignalFlow, flight: FlightCondition) -> None:
     flow.airframe(model, ("u", "w", "q", "theta"), IN_AIR)
     up = {by: model.slope("h", by) for by in model.states}
     flow.equal("climb", up)
-    flow.integral("h", {"climb": 1.0})
     c, s = math.cos(flight.alpha), math.sin(flight.alpha)
     flow.equal("airspeed", {"u": c, "w": s, "gust_u": -c, "gust_w": -s})
 
 
-def _height(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
+def _path(flow: SignalFlow, flight: FlightCondition, params: AirParams, climb: Terms) -> None:
+    """climb: what is asked for."""
     speed = flight.airspeed
-    flow.equal("climb_asked", {"h": -params.altitude_p})
+    flow.equal("climb_asked", climb)
     error = {"climb_asked": 1 / speed, "climb": -1 / speed}
     flow.integral("climb_trim", {name: params.climb_i * value for name, value in error.items()})
     asked = {name: params.climb_p * value for name, value in error.items()}
@@ -71,12 +90,16 @@ def _pitch(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None
 
 
 def _energy(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
-    speed, pole, slope = flight.airspeed, params.power_pole, max(params.throttle_climb, 1e-3)
-    height = speed / GRAVITY  # m of kinetic energy per m/s
-    made = {"throttle_asked": 1 / slope, "airspeed_felt": -params.throttle_speed / slope}
-    error = {"airspeed_felt": height, "kinetic": -1.0}
+    slope = max(params.throttle_climb, 1e-3)
+    _observer(flow, flight, params, {"throttle_asked": 1 / slope, "airspeed_felt": -params.throttle_speed / slope})
+    faster = slope * flight.airspeed / GRAVITY * params.airspeed_p
+    flow.equal("throttle_asked", {"climb_asked": slope, "airspeed_felt": -faster, "unexplained": -slope})
+
+
+def _observer(flow: SignalFlow, flight: FlightCondition, params: AirParams, made: Mapping[str, float]) -> None:
+    """made: climb rate by the throttle, as it is believed to be."""
+    pole = params.power_pole
+    error = {"airspeed_felt": flight.airspeed / GRAVITY, "kinetic": -1.0}  # m of kinetic energy
     gained = {name: 2 * pole * value for name, value in error.items()} | {"unexplained": 1.0, "climb": -1.0}
-    flow.integral("kinetic", {name: gained.get(name, 0.0) + made.get(name, 0.0) for name in (*gained, "throttle_asked")})
+    flow.integral("kinetic", {name: gained.get(name, 0.0) + made.get(name, 0.0) for name in {**gained, **made}})
     flow.integral("unexplained", {name: pole**2 * value for name, value in error.items()})
-    faster = {"climb_asked": slope, "airspeed_felt": -slope * height * params.airspeed_p, "unexplained": -slope}
-    flow.equal("throttle_asked", faster)

@@ -14,42 +14,50 @@ Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Terms = Mapping[str, complex | float | Complex]
 
+SLOWEST, BELOW = 1e-6, 10  # rad/s, from which poles are counted; frequencies between that and the first that was asked for
+
 
 class SignalFlow:
-    """Equations between signals at s = j omega; omega: (k,) [rad/s], rising from near 0 to beyond all that moves."""
+    """Equations between signals at s = j omega; omega: (k,) [rad/s], rising to beyond all that moves."""
 
     def __init__(self, omega: Floats, signals: Sequence[str], inputs: Sequence[str] = ()) -> None:
         """signals: each needs one equation; inputs: what comes from outside, as gusts and noise."""
         self.omega = omega
         self.s: Complex = np.asarray(1j * omega, dtype=np.complex128)
+        below = np.geomspace(SLOWEST, omega[0], BELOW, endpoint=False)
+        self._s: Complex = np.asarray(1j * np.concatenate((below, omega)), dtype=np.complex128)
         self.inputs = tuple(inputs)
         self._row = {name: i for i, name in enumerate(signals)}
         self._input = {name: i for i, name in enumerate(inputs)}
         n = len(signals)
         self._opened: dict[str, int] = {}
-        self._matrix: Complex = np.zeros((len(omega), n, n), dtype=np.complex128)
-        self._driven: Complex = np.zeros((len(omega), n, len(self.inputs)), dtype=np.complex128)
+        self._matrix: Complex = np.zeros((len(self._s), n, n), dtype=np.complex128)
+        self._driven: Complex = np.zeros((len(self._s), n, len(self.inputs)), dtype=np.complex128)
         self._order = 0
         self._solved: Complex | None = None
 
     def equal(self, name: str, terms: Terms) -> None:
-        """The signal is the sum of the terms: coefficients (scalar or (k,)) by signal or input."""
+        """The signal is the sum of the terms: coefficients by signal or input."""
         self._set(name, 1.0, terms)
 
     def integral(self, name: str, terms: Terms) -> None:
         """The signal's rate of change is the sum of the terms."""
         self._order += 1
-        self._set(name, self.s, terms)
+        self._set(name, self._s, terms)
 
     def lag(self, name: str, time: float, terms: Terms) -> None:
         """The signal follows the sum of the terms with a time constant [s]; at once with 0."""
         self._order += int(time > 0.0)
-        self._set(name, 1.0 + time * self.s, terms)
+        self._set(name, 1.0 + time * self._s, terms)
+
+    def dead_time(self, time: float) -> Complex:
+        """The coefficient of a signal that comes late by a dead time [s]."""
+        return np.asarray(np.exp(-time * self._s))
 
     def actuator(self, letter: str, asked: str | None, lags: tuple[float, float], late: float) -> None:
         """``delta_LETTER`` behind ``servo_LETTER`` behind the signal ``asked``: lags and dead time in [s]; None: it holds."""
         servo, model = lags
-        self.lag(f"servo_{letter}", servo, {asked: np.exp(-late * self.s)} if asked is not None else {})
+        self.lag(f"servo_{letter}", servo, {asked: self.dead_time(late)} if asked is not None else {})
         self.lag(f"delta_{letter}", model, {f"servo_{letter}": 1.0})
 
     def airframe(self, model: StateSpace, states: Sequence[str], in_air: Mapping[str, Sequence[str]]) -> None:
@@ -92,7 +100,7 @@ class SignalFlow:
         if self._solved is None:
             added = np.eye(len(self._row))[:, [self._row[name] for name in self._opened]]
             added = np.broadcast_to(added, (len(self.omega), *added.shape))
-            solved = np.linalg.solve(self._matrix, np.concatenate((self._driven, added), axis=2))
+            solved = np.linalg.solve(self._matrix[BELOW:], np.concatenate((self._driven[BELOW:], added), axis=2))
             self._solved = np.asarray(solved, dtype=np.complex128)
         return self._solved
 
@@ -101,7 +109,8 @@ class SignalFlow:
         """Number of closed-loop poles in the right half-plane.
 
         By the argument principle: the determinant of the equations turns by pi / 2 for each pole on the left, and back for each on the
-        right, as omega goes from 0 beyond the fastest pole (Mikhailov's criterion, which holds with dead times too).
+        right, as omega goes from 0 beyond the fastest pole (Mikhailov's criterion, which holds with dead times too). It begins far below
+        the frequencies that were asked for: two integrals slower than these would have turned it before the first of them.
         """
         sign, _ = np.linalg.slogdet(self._matrix)
         angle = np.unwrap(np.angle(sign))

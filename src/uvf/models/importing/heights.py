@@ -15,6 +15,7 @@ from scipy import ndimage
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.importing.notes import Notes
 from uvf.models.lfs_pointer import refuse_pointer
+from uvf.models.world.earth_field import earth_field
 from uvf.models.world.file import Origin, Terrain, WorldFile
 from uvf.models.world.terrain import FINEST
 from uvf.models.yaml_data import BadInput
@@ -159,7 +160,8 @@ def terrain_world(path: Path, folder: Path, size: tuple[float, float, float] | N
     terrain = terrain_of(grid, whole, folder / f"{path.stem}-heights.png", notes)
     if origin is None:
         notes.add("the file does not say where on Earth it lies: set 'origin'")
-    return WorldFile(f"Terrain of {path.name}.", origin or HOME, terrain_floor(terrain, notes), terrain=terrain)
+    floor, lies = terrain_floor(terrain, notes), origin or HOME
+    return WorldFile(f"Terrain of {path.name}.", lies, floor, terrain=terrain, magnetic_field=earth_field(lies))
 
 
 def terrain_floor(terrain: Terrain, notes: Notes) -> tuple[float, float, float, float]:

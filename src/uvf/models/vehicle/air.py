@@ -33,13 +33,23 @@ class Surface(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     property: Annotated[Properties, plain("JSBSim property or properties that are written; left out: the standard one.")] = []
     limit: Annotated[Travel, key("rad", "Deflection at full command; 0: there is no such surface.")] = 0.35
+    negative_limit: Annotated[Travel | None, key("rad", "Deflection at full command the other way; left out: `limit`.")] = None
     sign: Annotated[Literal[1, -1], plain("1 or -1: the property's sense against that of the [convention](frames.md).")] = 1
     rate: Annotated[Positive | None, key("rad/s", "Largest rate; left out: `servo_rate`.")] = None
     lag: Annotated[NotNegative | None, key("s", "Time constant; left out: `servo_lag`.")] = None
 
+    def lowest(self) -> float:
+        """The most negative deflection [rad]."""
+        return -(self.limit if self.negative_limit is None else self.negative_limit)
+
     def norm(self, deflection: float) -> float:
-        """Command of a deflection [rad], 1 at full; 0 where there is no such surface."""
-        return deflection / self.limit if self.limit else 0.0
+        """Command of a deflection [rad], 1 and -1 at full; 0 where there is no such surface."""
+        full = self.limit if deflection >= 0 else -self.lowest()
+        return deflection / full if full else 0.0
+
+    def deflection(self, norm: float) -> float:
+        """Deflection [rad] at a command, 1 and -1 at full."""
+        return norm * (self.limit if norm >= 0 else -self.lowest())
 
 
 class Lever(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

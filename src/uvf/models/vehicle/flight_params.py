@@ -43,7 +43,8 @@ class AirParams(FailsafeParams, frozen=True):
     pitch_i: Annotated[float, _meta(0, 2, "", "elevator per integrated error of pitch rate")] = 0.2
     yaw_damping: Annotated[float, _meta(0, 1, "s", "rudder per yaw rate beyond that of a coordinated turn")] = 0.15
     rudder_mix: Annotated[float, _meta(-2, 2, "", "rudder per aileron, against adverse yaw")] = 0.0
-    slip_i: Annotated[float, _meta(0, 1, "rad s/m", "rudder per integrated side force")] = 0.01
+    slip_i: Annotated[float, _meta(0, 1, "rad s/m", "rudder per integrated side force but the rudder's own")] = 0.01
+    rudder_force: Annotated[float, _meta(-50, 50, "m/s^2", "side force of the rudder alone, per rad at the trim airspeed")] = 0.0
     turn_ff: Annotated[float, _meta(0, 10, "s", "airship: rudder per commanded turn rate")] = 0.5
     turn_i: Annotated[float, _meta(0, 10, "", "airship: rudder per integrated error of turn rate")] = 0.2
 
@@ -69,7 +70,7 @@ class AirParams(FailsafeParams, frozen=True):
     sink_max: Annotated[float, _meta(0.5, 15, "m/s", "fastest descent")] = 4.0
     airspeed_p: Annotated[float, _meta(0.05, 2, "1/s", "acceleration per error of airspeed")] = 0.8
     power_pole: Annotated[float, _meta(0.05, 5, "rad/s", "how fast the power that throttle and trim do not explain is learnt")] = 0.9
-    throttle_climb: Annotated[float, _meta(0, 0.5, "s/m", "throttle per climb rate")] = 0.04
+    throttle_climb: Annotated[float, _meta(0, 0.5, "s/m", "throttle per climb rate; 0: it has no engine")] = 0.04
     idle_sink: Annotated[float, _meta(0.1, 20, "m/s", "sink at cruise airspeed when less throttle brakes no more")] = 5.0
     throttle_load: Annotated[float, _meta(0, 0.5, "", "throttle per load factor squared beyond one")] = 0.01
     throttle_speed: Annotated[float, _meta(0, 0.2, "s/m", "throttle per airspeed beyond cruise")] = 0.03
@@ -104,6 +105,7 @@ class AirParams(FailsafeParams, frozen=True):
     launch_push: Annotated[float, _meta(0, 200, "m/s^2", "forward push of a catapult or throw; 0: takes off from its wheels")] = 0.0
     glide_slope: Annotated[float, _meta(0.03, 0.2, "rad", "down the final approach")] = 0.08
     land_flap: Annotated[float, _meta(0, 1, "rad", "flaps on the final approach")] = 0.0
+    crosswind_max: Annotated[float, _meta(0, 100, "m/s", "crosswind in which it lands; in more it waits on the circle")] = 8.0
     gear_height: Annotated[float, _meta(0, 5, "m", "of the IMU and range finder over the ground the aircraft stands on")] = 0.3
     gear: Annotated[Literal["nose_wheel", "tail_wheel", "belly"], Meta(description="what it stands, takes off and lands on")] = "nose_wheel"
     brake_steering: Annotated[float, _meta(0, 5, "", "brake on one wheel per rad of rudder asked for; 0: a wheel steers")] = 0.0

@@ -151,6 +151,14 @@ class Strip(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     width: Annotated[float, Meta(ge=2, le=200), key("m", "Width.")]
 
 
+class Windsock(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A sock on a pole that shows the wind of the air simulation; vehicles bump into the pole alone."""
+
+    name: Annotated[str, plain("Name that contacts and events use; no two things of a world share one.")]
+    base: Annotated[tuple[Metres, Metres, Metres], plain("Foot of the pole x, y, z [m], world frame.")]
+    height: Annotated[Positive, key("m", "Height of the pole, at whose top the wind is shown.")] = 6.0
+
+
 class Terrain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Hills from a grey picture, 8 or 16 bit: black is the height of ``position``, white ``size[2]`` above it, north is up.
 
@@ -181,6 +189,7 @@ class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     looks: Annotated[list[Look], plain("What is only seen; what it stands for is `hidden`.")] = []
     terrain: Annotated[Terrain | None, plain("Hills from a picture.")] = None
     strips: Annotated[list[Strip], plain("Runways that aircraft land on; they are not drawn.")] = []
+    windsocks: Annotated[list[Windsock], plain("Windsocks; they show the wind that blows.")] = []
     wind: Annotated[Wind, plain("Wind of the place.")] = Wind()
     magnetic_field: Annotated[tuple[Tesla, Tesla, Tesla], plain("Magnetic field [T], ENU.")] = (0.0, 22.0e-6, -42.0e-6)
     ground_colour: Annotated[Colour, plain("Colour of the ground beyond the fields: red, green, blue, each 0 to 1.")] = (0.36, 0.5, 0.24)
@@ -238,12 +247,13 @@ def _check_area(area: tuple[float, float, float, float], place: FileLocation) ->
 def _check_things(world: WorldFile, folder: Path, place: FileLocation) -> None:
     """What is touched is told by its name; scripts close; meshes are there."""
     seen = {TERRAIN} if world.terrain is not None else set()
-    groups: dict[str, Sequence[Box | Ramp | Cylinder | Sphere | Mesh]] = {
+    groups: dict[str, Sequence[Box | Ramp | Cylinder | Sphere | Mesh | Windsock]] = {
         "boxes": world.boxes,
         "ramps": world.ramps,
         "cylinders": world.cylinders,
         "spheres": world.spheres,
         "meshes": world.meshes,
+        "windsocks": world.windsocks,
     }
     for group, things in groups.items():
         for i, thing in enumerate(things):

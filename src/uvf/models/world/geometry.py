@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 WALL, LOOK = "wall", "look"  # every stretch of wall, and whatever is only seen, is called so
 GRAZE = 0.001  # m, lower than that nothing is bumped into
+POLE_RADIUS, POLE_COLOUR = 0.06, (0.85, 0.85, 0.85)  # m; of a windsock
 BLOCK = 16  # cells a side, of which the ground's lowest and highest are known together
 MOST_CELLS = 4_000_000
 BESIDE_BUILDING = 0.25
@@ -118,6 +119,9 @@ def things(world: WorldFile, folder: Path = Path()) -> list[Solid]:
         middle = np.array(c.base) + rotate(tilt, np.array((0.0, 0.0, c.height / 2)))
         made.append(Solid(c.name, "cylinder", (c.radius, c.height), middle, tilt, c.colour, path=_script(c.path)))
     made += [Solid(s.name, "sphere", (s.radius,), np.array(s.centre), colour=s.colour) for s in world.spheres]
+    for sock in world.windsocks:
+        middle = np.array(sock.base) + np.array((0.0, 0.0, sock.height / 2))
+        made.append(Solid(sock.name, "cylinder", (POLE_RADIUS, sock.height), middle, colour=POLE_COLOUR))
     for m in world.meshes:
         made.append(Solid(m.name, "mesh", m.scale, np.array(m.position), from_euler(*m.rpy), m.colour, folder / m.file))
     return made

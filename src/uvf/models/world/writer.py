@@ -11,7 +11,7 @@ from uvf.models.world.file import Origin, Terrain, WorldFile
 from uvf.models.world.wind import Wind
 
 DECIMALS = {"latitude": 8, "longitude": 8, "magnetic_field": 9, "rpy": 6, "scale": 6}
-GROUPS = ("walls", "boxes", "cylinders", "spheres", "meshes", "looks", "fields")
+GROUPS = ("walls", "boxes", "ramps", "cylinders", "spheres", "meshes", "looks", "strips", "windsocks", "fields")
 
 
 def write_world(world: WorldFile, folder: Path, remarks: Sequence[str] = ()) -> Path:

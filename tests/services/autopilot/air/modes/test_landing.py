@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -56,9 +57,20 @@ def test_the_flare_has_no_step_and_no_kink():
     assert (np.diff(slopes) > -1e-9).all()
 
 
-def on_final(distance, height, right=0.0, airspeed=19.0, clearance=None, **now):
+def replace_params(**changed):
+    return msgspec.structs.replace(PARAMS, **changed)
+
+
+def joining(**state):
+    """Where the circle is left for the final approach, eastwards."""
+    start = 25.0 * PARAMS.min_airspeed
+    place = {"east": EAST.aim.east - start, "north": 0.0, "height": 5.0 + PARAMS.gear_height + SLOPE * start}
+    return cruising(**{"course": math.pi / 2, "yaw": math.pi / 2, **state, **place})
+
+
+def on_final(distance, height, right=0.0, airspeed=19.0, clearance=None, params=PARAMS, must_land=False, **now):
     """Eastwards, ``distance`` [m] before the point to touch at, the wheels ``height`` [m] over the strip."""
-    context = FlightContext(clearance=clearance)
+    context = FlightContext(clearance=clearance, must_land=must_land)
     state = {
         "course": math.pi / 2,
         "yaw": math.pi / 2,
@@ -69,10 +81,8 @@ def on_final(distance, height, right=0.0, airspeed=19.0, clearance=None, **now):
         "height": height + 5.0 + PARAMS.gear_height,
         **now,
     }
-    landing = LandingMode(cruising(**state), lambda now: EAST, context, PARAMS)
-    start = 25.0 * PARAMS.min_airspeed
-    joining = {**state, "east": EAST.aim.east - start, "north": 0.0, "height": 5.0 + PARAMS.gear_height + SLOPE * start}
-    landing.step(cruising(**joining), PARAMS, 0.02)
+    landing = LandingMode(cruising(**state), lambda now: EAST, context, params)
+    landing.step(joining(**state), params, 0.02)
     return landing, cruising(**state)
 
 
@@ -81,6 +91,25 @@ def test_it_leaves_the_circle_onto_the_final_approach_only_aligned_and_low_enoug
     assert landing.circle is None
     high, _ = on_final(300.0, 24.0, course=0.5)
     assert high.circle is not None
+
+
+def test_more_crosswind_than_it_may_land_in_keeps_it_on_the_circle():
+    params = replace_params(crosswind_max=6.0)
+    landing, _ = on_final(300.0, 24.0, params=params, wind_north=7.0)
+    assert landing.circle is not None
+    assert landing.told == "it waits on the circle: 7.0 m/s of crosswind, crosswind_max is 6 m/s"
+    landing.told = ""
+    at_exit = joining()
+    landing.step(replace(at_exit, wind_north=5.8), params, 0.02)  # not enough less to change its mind
+    assert landing.circle is not None and not landing.told
+    landing.step(replace(at_exit, wind_north=5.3), params, 0.02)
+    assert landing.circle is None and landing.told == "it lands: 5.3 m/s of crosswind"
+
+
+def test_a_wind_along_the_lane_and_a_failsafe_do_not_wait():
+    params = replace_params(crosswind_max=6.0)
+    assert on_final(300.0, 24.0, params=params, wind_east=-9.0)[0].circle is None
+    assert on_final(300.0, 24.0, params=params, wind_north=9.0, must_land=True)[0].circle is None
 
 
 def test_it_follows_the_slope():
@@ -114,7 +143,7 @@ def test_in_wind_it_approaches_a_little_faster():
 def test_an_approach_that_is_not_stable_is_given_up_for_another(changed, why):
     landing, now = on_final(**{"distance": 80.0, "height": flare(80.0, 19.0, SLOPE)[0], **changed})
     landing.step(now, PARAMS, 0.02)
-    assert why in landing.why_around
+    assert why in landing.told
     climbing = landing.step(now, PARAMS, 0.02)
     assert (climbing.asked.throttle, climbing.flap) == (1.0, 0.0)
 
@@ -122,7 +151,7 @@ def test_an_approach_that_is_not_stable_is_given_up_for_another(changed, why):
 def test_half_of_the_strip_without_touching_is_enough():
     landing, now = on_final(-125.0, 0.8)
     landing.step(now, PARAMS, 0.02)
-    assert "half of the strip" in landing.why_around
+    assert "half of the strip" in landing.told
 
 
 def test_after_a_climb_it_approaches_again():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from schemas.messages import Clock, FrameTransform, LaserScan, Quaternion, Vector3
+from schemas.messages import Clock, FrameTransform, FrameTransforms, LaserScan, Quaternion, Vector3
 from services.gcs.actions.page import Layer
 from services.gcs.state.state import Model
 from services.gcs.view.drawing import FloorPicture, MeshNode, Points, Polyline, TextNode
@@ -16,7 +16,8 @@ from services.gcs.view.scene.map_layers import floor_picture
 from services.gcs.view.scene.scene_view import SceneView
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import LEGS, UAV, UGV, demo_site, uav_at, ugv_at
-from uvf.models.world.file import Box
+from uvf.models.world.file import Box, Windsock
+from uvf.models.world.windsock import hangs
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose
 
 
@@ -40,6 +41,28 @@ def test_both_vehicles_stand_where_they_are(station):
     assert places[f"/vehicles/{UGV}"].position[:2] == pytest.approx(ugv_at(2.0)[:2])
     assert places[f"/vehicles/{UAV}"].position == pytest.approx(uav_at(2.0)[0])
     assert isinstance(station.page.now.nodes[f"/vehicles/{UGV}/0"], MeshNode)
+
+
+def told(name, wind, scale=1.0):
+    w, x, y, z = scale * hangs(np.array(wind))
+    return FrameTransform(child_frame_id=name, rotation=Quaternion(w=w, x=x, y=y, z=z))
+
+
+def test_a_windsock_hangs_as_the_simulation_says():
+    site = demo_site()
+    socks = [Windsock(name, (3.0, 4.0, 0.0), 5.0) for name in "abc"]
+    model = Model(dataclasses.replace(site, world=msgspec.structs.replace(site.world, windsocks=socks)))
+    view = SceneView(model)
+    assert view.places()["/world/windsocks/a"].position.tolist() == [3.0, 4.0, 5.0]
+    assert view.places()["/world/windsocks/a"].wxyz == pytest.approx(hangs(np.zeros(3)))
+    model.hear_windsocks(
+        FrameTransforms(transforms=[told("a", (0.0, 9.0, 0.0)), told("b", (9.0, 0.0, 0.0), 7.0), told("stranger", (9.0, 0.0, 0.0))])
+    )
+    places = view.places()
+    assert places["/world/windsocks/a"].wxyz == pytest.approx(hangs(np.array((0.0, 9.0, 0.0))))
+    assert places["/world/windsocks/b"].wxyz == pytest.approx(hangs(np.zeros(3)))  # no attitude
+    assert "/world/windsocks/stranger" not in places
+    assert isinstance(view.nodes(0.0)["/world/windsocks/a/0"], MeshNode)
 
 
 def test_what_moves_by_script_stands_where_it_is_at_simulation_time():

@@ -1,0 +1,211 @@
+"""Loops that are designed together, the limits of their gains, and what is made small: errors and the way of the surfaces in turbulence.
+
+Each error and each way counts as a share of a budget. Near the ground comfort does not count.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import msgspec
+import numpy as np
+
+from uvf.control.design import lateral_loops, longitudinal_loops
+from uvf.control.design.aircraft_loops import FINAL_UP_TO, AircraftLoops
+from uvf.control.design.flight_condition import ActuatorDelays, FlightCondition
+from uvf.control.design.signal_flow import Floats, SignalFlow
+from uvf.control.flight_control import on_final
+from uvf.maths.dryden import W20, spectra, strength
+from uvf.models.vehicle.flight_params import AirParams
+
+OMEGA: Floats = np.geomspace(0.02, 150.0, 110)  # rad/s
+TURBULENCE, HEIGHT = "moderate", 100.0  # m
+BANK_OFF, PITCH_OFF = (0.05, 1.0), (0.01, 5.0)  # rad and s: disturbances that come on bank and pitch, and how long they last
+LATERAL = {
+    "roll_time": (0.1, 2.0),
+    "roll_p": (1e-4, 2.0),
+    "roll_i": (1e-3, 2.0),
+    "yaw_damping": (1e-3, 1.0),
+    "slip_i": (1e-4, 1.0),
+    "course_p": (0.1, 5.0),
+    "k_path": (1e-3, 1.0),
+    "course_i": (1e-3, 0.2),
+}
+LONGITUDINAL = {
+    "pitch_time": (0.1, 2.0),
+    "pitch_p": (1e-4, 2.0),
+    "pitch_i": (1e-3, 2.0),
+    "climb_p": (0.05, 4.0),
+    "climb_i": (0.01, 1.0),
+    "altitude_p": (0.05, 2.0),
+    "airspeed_p": (0.08, 2.0),
+    "power_pole": (0.15, 5.0),
+}
+FINAL_LATERAL = ("roll_time", "roll_p", "roll_i", "course_p", "k_path")
+FINAL_LONGITUDINAL = ("climb_p", "pitch_time", "pitch_p", "pitch_i")
+"""Those that the final approach has of its own, called ``final_*``; and ``flare_p``."""
+FLARE = {"flare_p": (0.2, 2.5)}
+FINAL = (*(f"final_{name}" for name in (*FINAL_LATERAL, *FINAL_LONGITUDINAL)), *FLARE)
+"""Gains that are searched for, within these limits in their own units."""
+LATERAL_STARTS = ({"yaw_damping": (1.0, 4.0)}, {"rudder_mix": (1.0, 0.5, 0.1)}, {"course_p": (1.0, 0.4), "k_path": (1.0, 0.4)})
+LONGITUDINAL_STARTS = ({"pitch_p": (1.0, 3.0)}, {"pitch_i": (1.0, 0.3)}, {"climb_p": (1.0, 0.4)}, {"altitude_p": (1.0, 0.4)})
+"""Factors of the gains of a rule of thumb, of which the best are begun with: aircraft differ most in these."""
+STIFF = {"roll_p": 0.15, "roll_i": 0.3, "pitch_p": 0.3, "pitch_i": 1.0}
+"""Least gains of the rate loops, as shares of the feed-forward (those of ``_i``: 1/s): an attitude is to be held by itself, too."""
+STEEP = 0.3  # 1/s, with which a path is approached at least
+SLOWEST, SLOWER = 0.5, 4.0  # s, and of the delays: the longest time constant of an attitude
+ASIDE, ABOVE, FASTER = 0.5, 0.5, 0.7  # m, m, m/s: errors in turbulence, each worth as much as the surfaces' whole budget
+FINAL_SHARE, FINAL_WAY = 0.3, 3.0  # of ABOVE, of PITCH_WAY: budgets near the ground
+LEVEL = 0.05  # rad of bank in turbulence, worth a whole budget there
+FLARES = 1.5  # times altitude_p, to begin with
+ROLL_WAY, PITCH_WAY, THROTTLE_WAY = 5.0, 3.0, 0.3  # deg/s of ailerons and rudder, of the elevator; 1/s: budgets of their way there
+LARGEST = 4  # power of a share: what lies well within its budget is not worth much
+WAY = np.degrees(np.sqrt(2 / np.pi))  # mean size of a normal number, in deg
+
+Limits = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Gusts:
+    """Spectra of the gusts at OMEGA, by name."""
+
+    spectra: Mapping[str, Floats]
+
+    def rms(self, flow: SignalFlow, output: str, names: str, rate: bool = False) -> float:
+        """Of a signal in gusts of these names; rate: of how fast it moves."""
+        power = sum(np.abs(flow.response(output, f"gust_{name}")) ** 2 * self.spectra[name] for name in names)
+        return float(np.sqrt(np.trapezoid(power * (OMEGA**2 if rate else 1.0), OMEGA)))
+
+
+def disturbed(flow: SignalFlow, output: str, at: str, size: float, time: float) -> float:
+    """RMS of a signal under a first-order random disturbance of ``size`` (RMS) and ``time`` [s] that is added at another."""
+    power = size**2 * 2 * time / np.pi / (1 + (time * OMEGA) ** 2)
+    return float(np.sqrt(np.trapezoid(np.abs(flow.closed(output, at)) ** 2 * power, OMEGA)))
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Loops that are designed together: their gains with limits, how they are built, and what is made small in cruise."""
+
+    gains: Mapping[str, Limits]
+    opened: Mapping[str, str]
+    build: Callable[[FlightCondition, ActuatorDelays, AirParams], SignalFlow]
+    wanted: Callable[[SignalFlow], float]
+    starts: Sequence[Mapping[str, Sequence[float]]] = ()  # factors of the gains, to begin with; those of one mapping go together
+    fastest: float = np.inf  # m/s, up to which it is flown so
+
+
+def axes(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> tuple[Axis, Axis]:
+    """Lateral and longitudinal loops in cruise; firmness: above 1 errors count more, the motion of the surfaces less."""
+    longitudinal = _longitudinal if aircraft.powered else _gliding
+    return _lateral(aircraft, params, firmness), longitudinal(aircraft, params, firmness)
+
+
+def as_in_cruise(params: AirParams) -> AirParams:
+    """With the gains of the final approach from those of cruise."""
+    flare = min(max(FLARES * params.altitude_p, FLARE["flare_p"][0]), FLARE["flare_p"][1])
+    same = {f"final_{name}": getattr(params, name) for name in (*FINAL_LATERAL, *FINAL_LONGITUDINAL)}
+    return msgspec.structs.replace(params, flare_p=flare, **same)
+
+
+def _air(aircraft: AircraftLoops, params: AirParams) -> Gusts:
+    flight = _cruise(aircraft, params)
+    return Gusts(spectra(OMEGA, strength(HEIGHT, W20[TURBULENCE], TURBULENCE), flight.airspeed, flight.span))
+
+
+def _cruise(aircraft: AircraftLoops, params: AirParams) -> FlightCondition:
+    return min(aircraft.conditions, key=lambda flight: abs(flight.airspeed - params.trim_airspeed))
+
+
+def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
+    air = _air(aircraft, params)
+
+    def wanted(flow: SignalFlow) -> float:
+        error, way = _aside(air, flow)
+        return _within(firmness * error / ASIDE, way / ROLL_WAY)
+
+    gains = LATERAL | _inner("roll", aircraft.delays.total("aileron"), params.roll_ff, LATERAL)
+    gains["k_path"] = STEEP / (params.trim_airspeed * params.chi_inf * 2 / np.pi), LATERAL["k_path"][1]
+    if params.rudder_mix:
+        gains["rudder_mix"] = (1e-3, abs(params.rudder_mix))
+    return Axis(gains, lateral_loops.LOOPS, partial(lateral_loops.lateral_flow, OMEGA), wanted, LATERAL_STARTS)
+
+
+def _longitudinal(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
+    air = _air(aircraft, params)
+
+    def wanted(flow: SignalFlow) -> float:
+        error, way = _above(air, flow)
+        throttle = np.sqrt(2 / np.pi) * air.rms(flow, "servo_t", "uwq", rate=True)
+        return _within(firmness * error / ABOVE, air.rms(flow, "airspeed", "uwq") / FASTER, way / PITCH_WAY, throttle / THROTTLE_WAY)
+
+    gains = LONGITUDINAL | _inner("pitch", aircraft.delays.total("elevator"), params.pitch_ff, LONGITUDINAL)
+    return Axis(gains, longitudinal_loops.LOOPS, partial(longitudinal_loops.longitudinal_flow, OMEGA), wanted, LONGITUDINAL_STARTS)
+
+
+def _gliding(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
+    air = _air(aircraft, params)
+
+    def wanted(flow: SignalFlow) -> float:
+        error = np.hypot(air.rms(flow, "airspeed", "uwq"), disturbed(flow, "airspeed", "pitch", *PITCH_OFF))
+        return _within(firmness * float(error) / FASTER, WAY * air.rms(flow, "servo_e", "uwq", rate=True) / PITCH_WAY)
+
+    gains = {name: limits for name, limits in LONGITUDINAL.items() if name != "altitude_p"}
+    gains |= _inner("pitch", aircraft.delays.total("elevator"), params.pitch_ff, LONGITUDINAL)
+    return Axis(gains, longitudinal_loops.GLIDING, partial(longitudinal_loops.gliding_flow, OMEGA), wanted, LONGITUDINAL_STARTS)
+
+
+def _aside(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
+    """Error beside the path [m] in gusts and after disturbances of bank, and the way of ailerons and rudder [deg/s]."""
+    error = float(np.hypot(air.rms(flow, "aside", "vpr"), disturbed(flow, "aside", "bank", *BANK_OFF)))
+    return error, WAY * sum(air.rms(flow, surface, "vpr", rate=True) for surface in ("servo_a", "servo_r"))
+
+
+def _above(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
+    """Error of height [m] in gusts and after disturbances of pitch, and the way of the elevator [deg/s]."""
+    error = float(np.hypot(air.rms(flow, "h", "uwq"), disturbed(flow, "h", "pitch", *PITCH_OFF)))
+    return error, WAY * air.rms(flow, "servo_e", "uwq", rate=True)
+
+
+def final_axes(aircraft: AircraftLoops, params: AirParams, firmness: float) -> list[Axis]:
+    """Near the ground, where comfort does not count: as stiff as the margins allow; pitch of a glider is as in cruise."""
+    air = _air(aircraft, params)
+    roll, pitch = axes(aircraft, params)
+
+    def beside(flow: SignalFlow) -> float:
+        error, way = _aside(air, flow)
+        level = air.rms(flow, "phi", "vpr") / LEVEL
+        return _within(firmness * error / (FINAL_SHARE * ASIDE), firmness * level, way / (FINAL_WAY * ROLL_WAY))
+
+    def above(flow: SignalFlow) -> float:
+        error, way = _above(air, flow)
+        return _within(firmness * error / (FINAL_SHARE * ABOVE), way / (FINAL_WAY * PITCH_WAY))
+
+    lateral = {f"final_{name}": roll.gains[name] for name in FINAL_LATERAL}
+    longitudinal = {f"final_{name}": pitch.gains[name] for name in FINAL_LONGITUDINAL} | FLARE
+    across = _as_final(roll, lateral, beside, params)
+    return [across, _as_final(pitch, longitudinal, above, params)] if aircraft.powered else [across]
+
+
+def _as_final(axis: Axis, gains: Mapping[str, Limits], wanted: Callable[[SignalFlow], float], params: AirParams) -> Axis:
+    """The axis of cruise with the ``gains`` that are its own on the final approach."""
+
+    def build(flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
+        return axis.build(flight, delays, on_final(params))
+
+    return Axis(gains, axis.opened, build, wanted, fastest=FINAL_UP_TO * params.trim_airspeed)
+
+
+def _inner(axis: str, delay: float, ahead: float, gains: Mapping[str, Limits]) -> dict[str, Limits]:
+    """Limits of the inner loop's gains, by the delay [s] of its surface and its feed-forward."""
+    low, high = gains[f"{axis}_time"]
+    found = {f"{axis}_time": (low, min(max(SLOWEST, SLOWER * delay), high))}
+    for name in (f"{axis}_p", f"{axis}_i"):
+        low, high = gains[name]
+        found[name] = min(max(STIFF[name] * ahead, low), high), high
+    return found
+
+
+def _within(*shares: float) -> float:
+    """What is made small: each error and each way as a share of its budget, the largest almost alone."""
+    return float(np.log(np.sum(np.power(shares, LARGEST))) / 2)
