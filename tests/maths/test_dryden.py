@@ -90,6 +90,29 @@ def test_below_10_feet_it_is_as_at_10_feet():
     assert strength(0.0, 10.0, "light") == strength(dryden.LOWEST, 10.0, "light")
 
 
+def test_a_turn_leaves_the_air_as_it_is():
+    """What an aircraft meets that turns is, in axes that do not, what it would have met flying straight but for new gusts."""
+    turns, goes = (Turbulence(SPAN, np.random.default_rng(3)) for _ in range(2))
+    air = strength(100.0, 15.0, "moderate")
+    for _ in range(500):
+        turns.step(0.2, 0.01, air)
+        goes.step(0.2, 0.01, air)
+    before = goes.step(1e-9, 0.01, air)
+    turns.turn(np.pi / 2)
+    after = turns.step(1e-9, 0.01, air)
+    assert (after.u, after.v) == pytest.approx((-before.v, before.u), abs=1e-3)
+    assert after.r == pytest.approx(before.r, abs=1e-3) and after.w == pytest.approx(before.w, abs=1e-3)
+
+
+def test_circling_meets_gusts_of_the_same_strength():
+    turbulence, air = Turbulence(SPAN, np.random.default_rng(4)), strength(100.0, 15.0, "moderate")
+    met = []
+    for _ in range(400_000):
+        turbulence.turn(0.05)
+        met.append(turbulence.step(2.0, 0.1, air)[:2])
+    assert np.std(np.array(met), axis=0) == pytest.approx((air.sigma_u, air.sigma_u), rel=0.06)
+
+
 def test_the_seed_decides():
     assert (series(100, seed=5) == series(100, seed=5)).all()
     assert (series(100, seed=5) != series(100, seed=6)).any()

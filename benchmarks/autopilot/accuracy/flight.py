@@ -14,6 +14,7 @@ import yaml
 from benchmarks.autopilot.accuracy.course import HIGH, LOW, Course
 from benchmarks.autopilot.accuracy.score import Flight, score
 from launch import catalogue
+from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.service import AutopilotAir
 from services.sim_air.service import SimAir
 from uvf.control import thesis
@@ -107,7 +108,7 @@ class Probe:
         wind_error = float(np.hypot(now.wind_east - wind[0], now.wind_north - wind[1]))
         speeds, surfaces = (motion.airspeed, now.airspeed), (s.aileron, s.elevator, s.rudder, s.throttle)
         self.rows.append((t, north, east, height, now.north, now.east, now.height, *speeds, *surfaces, *off, roll, wind_error))
-        return not pilot.navigator.finished and self.craft.wreck is None
+        return not pilot.navigator.finished and self.craft.wreck is None and pilot.mode is FlightMode.MISSION
 
     def flight(self) -> Flight:
         """What has been seen so far, column by column."""

@@ -41,6 +41,7 @@ class AirMass:
         self._begins = wind.begins
         self._t = 0.0
         self._turbulence = Turbulence(span, rng) if wind.turbulence else None
+        self._yaw: float | None = None  # rad, of the last step
         self._entered = [0.0] * len(wind.gusts)  # m of air flown since the beginning of each gust that has a time
         self.is_steady = not (wind.shear or wind.begins or wind.changes or wind.gusts or wind.turbulence)
 
@@ -73,6 +74,8 @@ class AirMass:
             velocity = velocity + self._share(i, gust, t, flight.airspeed * dt, flight) * begun * np.array(gust.velocity)
         if self._turbulence is not None and self._wind.turbulence is not None:
             data = self._wind.turbulence
+            self._turbulence.turn(flight.yaw - (flight.yaw if self._yaw is None else self._yaw))
+            self._yaw = flight.yaw
             g = self._turbulence.step(flight.airspeed * dt, dt, strength(flight.height, data.at_20_feet, data.severity))
             c, s = math.cos(flight.yaw), math.sin(flight.yaw)
             velocity = velocity + begun * np.array((c * g.u + s * g.v, s * g.u - c * g.v, -g.w))

@@ -17,8 +17,10 @@ SMOOTHED = 0.5  # s, of the comparison: a gust is no fault
 AGREES = 5.0  # s of agreement before the sensor is watched, and before it is believed again
 WIND_TIME = 30.0  # s, behind which the wind that counts follows the one that is estimated
 SHEAR = 0.35  # of the wind, that an aircraft may lose or meet on its way down or up: no fault of a sensor
-GUSTS, GUST_TIME = 5.0, 60.0  # standard deviations of the comparison, as it has been of late, that are no fault; s
-MOST_GUST = 0.5  # of airspeed_gap, that a deviation counts for at most: a fault does not hide itself
+GUSTS, GUST_TIMES = 5.0, (10.0, 60.0)  # standard deviations of the comparison, as it has been of late, that are no fault; s
+ROUGH_TIME = 2.0  # s of rough air that are taken for granted at first, for little time tells nothing
+MOST_GUST = 2.5  # m/s, that a deviation counts for at most: a fault does not hide itself
+NEVER_A_GUST = 0.85  # of the airspeed that is expected
 LIFT_TIME = 2.0  # s, of the comparison with the lift: updraughts turn the angle of attack
 LIFT_SHARE = 0.15  # of trim_airspeed, from which on the lift contradicts too
 LEAST_ALPHA, MOST_BANK = 0.03, 0.9  # rad, over that of no lift; rad: within these the lift tells the airspeed
@@ -48,6 +50,19 @@ class FlightState:
     airborne: bool
 
 
+class GustPower:
+    """Mean square of gusts, of all that has been flown and after ``time`` [s] of about as long ago as that."""
+
+    def __init__(self, time: float) -> None:
+        self.mean = MOST_GUST**2  # m^2/s^2
+        self._time, self._known = time, ROUGH_TIME
+
+    def step(self, gust: float, dt: float) -> None:
+        """Takes a gust [m/s] that was met for ``dt`` [s]."""
+        self._known = min(self._known + dt, self._time)
+        self.mean += dt / self._known * (min(gust, MOST_GUST) ** 2 - self.mean)
+
+
 class AirDataCheck:
     """Passes on the pressures that can be believed; replaces a pitot pressure that cannot by that of ground speed and wind."""
 
@@ -59,7 +74,7 @@ class AirDataCheck:
         self._frozen = (False, False)
         self._smoothed = LowPass(SMOOTHED)
         self._by_lift = LowPass(LIFT_TIME)
-        self._power = LowPass(GUST_TIME)
+        self._power = [GustPower(time) for time in GUST_TIMES]
         self._wind: tuple[float, float] | None = None
         self._agreed = 0.0  # s
         self._watched = False
@@ -95,7 +110,7 @@ class AirDataCheck:
             gap = self._smoothed.step(measured - expected, dt)
             if (lifted := lift_airspeed(now, params)) is not None:
                 self._by_lift.step(measured - lifted, dt)
-            self._judge(gap, self._limit(gap, params, dt), params, dt)
+            self._judge(gap, self._limit(gap, expected, params, dt), params, dt)
         return replace(pressures, differential=0.5 * density * expected**2) if self.gap else pressures
 
     def _expected(self, now: Estimate, dt: float) -> float:
@@ -110,12 +125,17 @@ class AirDataCheck:
         north, east = now.ground_speed * math.cos(now.course) - wn, now.ground_speed * math.sin(now.course) - we
         return math.hypot(north, east, now.climb)
 
-    def _limit(self, gap: float, params: AirParams, dt: float) -> float:
-        """m/s, up to which it may be gusts and a wind that differs from place to place."""
+    def _limit(self, gap: float, expected: float, params: AirParams, dt: float) -> float:
+        """m/s, up to which it may be gusts and a wind that differs from place to place.
+
+        Gusts are known from the mean of their squares, of the last minute or of the last seconds: whichever air was rougher.
+        """
         least = params.airspeed_gap * params.trim_airspeed
-        if self._watched and not self.gap:
-            self._power.step(min(abs(gap), MOST_GUST * least) ** 2, dt)
-        return max(least, GUSTS * math.sqrt(self._power.value or 0.0)) + SHEAR * math.hypot(*self._wind or (0.0, 0.0))
+        if not self.gap:
+            for power in self._power:
+                power.step(abs(gap), dt)
+        gusts = min(GUSTS * math.sqrt(max(power.mean for power in self._power)), NEVER_A_GUST * expected)
+        return max(least, gusts) + SHEAR * math.hypot(*self._wind or (0.0, 0.0))
 
     def _judge(self, gap: float, limit: float, params: AirParams, dt: float) -> None:
         """Believed until off by more than ``limit`` [m/s], and by the lift too, or stands still; again after 5 s within half of it."""

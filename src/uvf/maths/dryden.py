@@ -118,6 +118,18 @@ class Turbulence:
         self._u, self._p = float(start[0]), float(start[1])
         self._v, self._w = _Lateral(float(start[2]), float(start[3])), _Lateral(float(start[4]), float(start[5]))
         self._yaw, self._pitch = _Gradient(), _Gradient()
+        self._sigma_v = 0.0  # m/s, of the last step
+
+    def turn(self, angle: float) -> None:
+        """The flight has turned to the left by an angle [rad], and the gusts have not: one from ahead comes from the right then.
+
+        Gusts that went round with a circling aircraft would work on it all the time, and give or take energy that no air has.
+        """
+        c, s, u, v = math.cos(angle), math.sin(angle), self._u, self._v.value
+        self._u = c * u - s * v
+        changed = c * v + s * u - v
+        self._v.shift(changed)
+        self._yaw.shift(self._sigma_v * changed)
 
     def step(self, flown: float, dt: float, air: Strength) -> GustVelocities:
         """Gusts that the aircraft meets ``flown`` [m] through the air and ``dt`` [s] after the last step."""
@@ -125,6 +137,7 @@ class Turbulence:
         speed = max(flown / dt, 1e-3)
         self._u = _markov(self._u, flown / air.length_u, n[0])
         self._p = _markov(self._p, flown * math.pi / (4 * self._span), n[1])
+        self._sigma_v = air.sigma_u
         v = air.sigma_u * self._v.step(flown / air.length_u, n[2], n[3])
         w = air.sigma_w * self._w.step(flown / air.length_w, n[4], n[5])
         p = roll_sigma(air, self._span) * self._p
@@ -159,7 +172,16 @@ class _Lateral:
         l21 = c12 / l11 if l11 else 0.0
         self._second = keep * (self._second + theta * self._first) + l21 * a + math.sqrt(max(c11 - l21 * l21, 0.0)) * b
         self._first = keep * self._first + l11 * a
+        return self.value
+
+    @property
+    def value(self) -> float:
+        """Its output."""
         return ROOT3 * self._first + (1 - ROOT3) * self._second
+
+    def shift(self, change: float) -> None:
+        """Changes the output at once."""
+        self._first, self._second = self._first + change, self._second + change
 
 
 def _covariance(x: float) -> tuple[float, float, float]:
@@ -186,3 +208,8 @@ class _Gradient:
         behind = (self._smooth - self._last + lag * slope) * keep
         self._smooth, self._last = value - lag * slope + behind, value
         return (value - self._smooth) / lag
+
+    def shift(self, change: float) -> None:
+        """What it follows is counted from elsewhere."""
+        if self._smooth is not None:
+            self._smooth, self._last = self._smooth + change, self._last + change
