@@ -28,7 +28,7 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
 
 NOTES = "import.txt"
-LIFT = 0.5  # coefficient at which the speed is first tried
+LIFT = 0.4  # coefficient at which the speed is first tried
 GEAR = {"nose_wheel": "wheels, one of them under its nose", "tail_wheel": "wheels, one of them under its tail", "belly": "its belly"}
 PUSH = 6.0  # m/s^2, by which a throw or a bungee is felt
 BRAKE_STEERING = 2.5  # per rad of rudder

@@ -2,6 +2,7 @@
 
 import math
 
+import msgspec
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS, cruising
@@ -69,6 +70,24 @@ def test_slip_to_the_right_is_steered_out_by_the_rudder():
     for _ in range(100):
         surfaces = once(cruising(side_force=-1.0), control=control)  # wind from the right pushes left
     assert surfaces.rudder < -0.01
+
+
+def test_the_rudders_own_force_is_no_slip():
+    """Of a slender aircraft the rudder pushes more than the slip that it makes, and the other way: what is felt would grow."""
+    params, control, felt = msgspec.structs.replace(PARAMS, rudder_force=6.0, slip_i=0.05), FlightControl(SERVOS), 0.0
+    slips = []
+    for _ in range(3000):
+        rudder = control.step(cruising(side_force=felt), LEVEL, params, 0.02).rudder
+        slipping = -3.0 * rudder - 0.3  # by the rudder, and by a propeller
+        felt = slipping + 6.0 * rudder
+        slips.append(slipping)
+    assert abs(slips[-1]) < 0.01 < abs(slips[0])
+
+
+def test_an_elevator_with_little_way_down_has_it_all_up():
+    servos = Servos(ServoLimits(0.35), ServoLimits(0.05, negative_limit=0.3), ServoLimits(0.35))
+    up, down = (FlightControl(servos).hold(cruising(), AttitudeSetpoint(0.0, pitch, 0.5), PARAMS, 0.02) for pitch in (3.0, -3.0))
+    assert up.elevator < -0.06 and down.elevator == 0.05
 
 
 def test_surfaces_stay_within_their_stops():

@@ -49,6 +49,13 @@ def test_with_a_dead_motor_it_glides_at_the_airspeed_asked_for():
     assert heights(seen)[-1] < 450.0
 
 
+def test_without_an_engine_it_glides_at_the_airspeed_asked_for_and_leaves_the_throttle_alone():
+    glider = type(PARAMS)(**{**KEEN, "throttle_climb": 0.0, "trim_throttle": 0.0, "throttle_speed": 0.0, "idle_sink": 1.5})
+    seen = fly(Point(height=900.0, engine=0.0), cruise(height=900.0), 120.0, glider)
+    assert throttles(seen).max() == 0.0
+    assert airspeeds(seen)[2000:].mean() == pytest.approx(25.0, abs=0.5) and np.ptp(airspeeds(seen)[3000:]) < 0.5
+
+
 def test_when_the_motor_is_back_it_climbs_back_and_settles_without_overshoot_of_the_throttle_trim():
     point = Point(height=200.0, engine=0.0)
     fly(point, cruise(height=200.0), 30.0)

@@ -14,6 +14,7 @@ Floats = NDArray[np.float64]
 Pair = tuple[Floats, Floats]
 """Of the truth, and of the estimate."""
 
+NONE = np.array((np.nan,))  # of a course without such legs: a glider's never runs level
 SETTLED = 30.0  # s after the start; nothing before it counts
 
 
@@ -144,7 +145,7 @@ def score(flight: Flight, course: Course) -> dict[str, float]:
     whole = slice(int(legs[0].k[0]), int(legs[-1].k[-1]))
 
     def both(deviation: Callable[[Floats], list[Floats]]) -> Pair:
-        true, known = (np.concatenate(deviation(points)) for points in (flight.truth, flight.estimate))
+        true, known = (np.concatenate(deviation(points) or [NONE]) for points in (flight.truth, flight.estimate))
         return true, known
 
     aside = both(lambda points: [w.aside(points) for w in legs])

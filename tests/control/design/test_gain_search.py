@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -41,6 +42,15 @@ LATERAL = StateSpace(
     np.array([[0.0, 3.0], [60.0, 0.0], [-4.0, -15.0], [0.0, 0.0], [0.0, 0.0]]),
     ("v", "p", "r", "phi", "psi"),
     ("delta_a", "delta_r"),
+)
+WEAK = np.array(
+    [
+        [-0.40, 3.55, -72.9, 9.8, 0.0],
+        [-0.114, -2.95, -0.02, 0.0, 0.0],
+        [0.0092, -0.27, -0.256, 0.0, 0.0],
+        [0.0, 1.0, 0.05, 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0, 0.0],
+    ]
 )
 PARAMS = AirParams(
     trim_airspeed=SPEED,
@@ -89,6 +99,26 @@ def test_slow_servos_make_slow_loops():
     quick, slow = (designed(aircraft(lag), begun(aircraft(lag), PARAMS)) for lag in (0.05, 0.15))
     assert slow.roll_time > quick.roll_time
     assert slow.course_p < quick.course_p
+
+
+def test_a_glider_holds_its_airspeed_with_all_margins():
+    glider = msgspec.structs.replace(PARAMS, throttle_climb=0.0, throttle_speed=0.0, trim_throttle=0.0)
+    craft = replace(aircraft(0.05), powered=False)
+    params = designed(craft, begun(craft, glider))
+    found = craft.loops(params)
+    assert {loop.name for loop in found} == {"path", "roll", "yaw", "airspeed", "pitch", "final path", "final roll"}
+    assert all(loop.stable and loop.margins.peak <= PEAK for loop in found)
+    assert all(loop.stable for loop in craft.worst(params, seed=7))
+
+
+def test_an_aircraft_of_which_the_full_mix_of_the_rudder_is_too_much_is_designed_too():
+    """As the T-6A of JSBSim: its ailerons yaw it strongly with the roll, and it hardly turns into the wind by itself."""
+    side = replace(LATERAL, a=WEAK, b=np.array([[0.0, 0.0], [24.6, 0.55], [2.25, -2.14], [0.0, 0.0], [0.0, 0.0]]))
+    flight = FlightCondition(73.0, 73.0, 0.05, LONGITUDINAL, side, 73.0, 10.0)
+    craft = AircraftLoops((flight,), ActuatorDelays(*[(0.05, 0.0)] * 3, (0.0, 0.2)))
+    params = msgspec.structs.replace(PARAMS, trim_airspeed=73.0, roll_ff=0.12, rudder_mix=1.0)
+    lateral = [loop for loop in craft.loops(designed(craft, begun(craft, params))) if loop.name in ("path", "roll", "yaw")]
+    assert all(loop.stable and loop.margins.peak <= PEAK for loop in lateral)
 
 
 def test_gains_for_quick_servos_are_found_out_with_slow_ones():

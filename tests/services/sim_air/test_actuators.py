@@ -60,6 +60,13 @@ def test_flaps_go_down_only_and_as_far_as_they_go():
     assert after(BODY, Controls(flap=9.0), 1.0).flap == pytest.approx(BODY.controls.flap.limit)
 
 
+def test_an_elevator_goes_as_far_as_it_goes_each_way():
+    unequal = msgspec.structs.replace(BODY.controls, elevator=Surface(limit=0.1, negative_limit=0.3))
+    body = msgspec.structs.replace(BODY, controls=unequal)
+    assert after(body, Controls(elevator=9.0), 1.0).elevator == pytest.approx(0.1)
+    assert after(body, Controls(elevator=-9.0), 1.0).elevator == pytest.approx(-0.3)
+
+
 def test_brakes_hold_at_once_and_no_more_than_wholly():
     assert after(BODY, Controls(brake=3.0), 0.005).brake == 1.0
 

@@ -198,7 +198,7 @@ AIR_RULES: tuple[FailsafeRule[FailsafeInputs], ...] = (
         detail=lambda k: f"{k.stop} for {k.stopped_for:.0f} s",
         clear_delay=5.0,
         parameters=("saturation_time",),
-        does="half the bank and half the climb",
+        does="half the bank of the corners to come, half the climb and the descent",
     ),
     FailsafeRule(
         "attitude",

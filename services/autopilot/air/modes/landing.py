@@ -19,12 +19,14 @@ from uvf.guidance.approach import Approach
 from uvf.guidance.route import Circle, Place
 from uvf.guidance.runways import Runway
 from uvf.guidance.vector_field import line_reference
+from uvf.maths.atmosphere import power
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
 FINAL_TIME = 25.0  # s at the lowest airspeed: the length of the final approach
 ON_CIRCLE = 5.0  # m of height, with which it may be left
 MOST_TAILWIND = 1.5  # m/s, with which it lands
+GROUND_WIND, SHEAR = 10.0, 1 / 7  # m, at which a wind at the ground is given; exponent
 EASED = 0.9  # of crosswind_max, from which on it lands that has waited for less
 ALIGNED = 0.3  # rad, of the course on leaving the circle
 GUST_SHARE, GUST_MOST = 0.4, 0.2  # of the wind, of min_airspeed: what is added to it on the approach
@@ -159,8 +161,12 @@ class LandingMode(FlightPhase):
         return Setpoint(PathSetpoint(circle.aim(now, params), circle.centre.height, 0.0, airspeed), params.land_flap if near else 0.0)
 
     def _is_windy(self, now: Estimate, params: AirParams) -> bool:
-        """Whether it stays on the circle, because more wind blows across the lane than it may be landed in."""
-        across = abs(self.lane.crosswind(now))
+        """Whether it stays on the circle, because more wind blows across the lane than it may be landed in.
+
+        Near the ground there is less of it than on the circle: by a power of the height, as over open country.
+        """
+        height = max(now.height - self.lane.aim.height, GROUND_WIND)
+        across = abs(self.lane.crosswind(now)) / power(height, SHEAR, GROUND_WIND)
         windy = not self._senses.must_land and across > params.crosswind_max * (EASED if self._waits else 1.0)
         if windy and not self._waits:
             self.told = f"it waits on the circle: {across:.1f} m/s of crosswind, crosswind_max is {params.crosswind_max:g} m/s"

@@ -105,7 +105,7 @@ class AirParams(FailsafeParams, frozen=True):
     launch_push: Annotated[float, _meta(0, 200, "m/s^2", "forward push of a catapult or throw; 0: takes off from its wheels")] = 0.0
     glide_slope: Annotated[float, _meta(0.03, 0.2, "rad", "down the final approach")] = 0.08
     land_flap: Annotated[float, _meta(0, 1, "rad", "flaps on the final approach")] = 0.0
-    crosswind_max: Annotated[float, _meta(0, 100, "m/s", "crosswind in which it lands; in more it waits on the circle")] = 8.0
+    crosswind_max: Annotated[float, _meta(0, 100, "m/s", "crosswind at 10 m in which it lands; in more it waits on the circle")] = 8.0
     gear_height: Annotated[float, _meta(0, 5, "m", "of the IMU and range finder over the ground the aircraft stands on")] = 0.3
     gear: Annotated[Literal["nose_wheel", "tail_wheel", "belly"], Meta(description="what it stands, takes off and lands on")] = "nose_wheel"
     brake_steering: Annotated[float, _meta(0, 5, "", "brake on one wheel per rad of rudder asked for; 0: a wheel steers")] = 0.0

@@ -230,10 +230,10 @@ class Rig:
     SENSED = ("imu", "air_data", "surface_command", "wheel_command", "targets", "quality", "planning")
     CALLS = tuple(MavlinkService.calls)
 
-    def __init__(self, answers=True, shelf=None, reserved=None, rover=ROVER_FACTS):
+    def __init__(self, answers=True, shelf=None, reserved=None, rover=ROVER_FACTS, plane=PLANE_FACTS):
         self.link = MemoryLink()
         self.reserved = reserved
-        self.rover_facts = rover
+        self.plane_facts, self.rover_facts = plane, rover
         self.shelf = shelf or Shelf()
         self.restart()
         self.plane = Vehicle(Kind.KIND_FIXED_WING, (100.0, 200.0, 80.0))
@@ -258,7 +258,7 @@ class Rig:
     def restart(self):
         """The process begins anew; the vehicles go on."""
         self.service = MavlinkService(
-            [PLANE_FACTS, self.rover_facts], self.link, {**shelves(), "plane": self.shelf}, reserved=self.reserved
+            [self.plane_facts, self.rover_facts], self.link, {**shelves(), "plane": self.shelf}, reserved=self.reserved
         )
 
     def say(self, message, system=255, component=190, peer=GCS):

@@ -35,6 +35,17 @@ def test_sign_limit_and_name_are_those_of_the_file():
     assert written(Controls(aileron=0.25), (*STANDARD, "fcs/roll"), controls=controls)["fcs/roll"] == -0.5
 
 
+def test_a_surface_may_go_further_one_way_than_the_other():
+    controls = CommandProperties(elevator=Surface(limit=0.07, negative_limit=0.244))
+    for deflection, norm in ((0.035, 0.5), (-0.122, -0.5), (-0.244, -1.0)):
+        assert written(Controls(elevator=deflection), controls=controls)["fcs/elevator-cmd-norm"] == pytest.approx(norm)
+        assert controls.elevator.deflection(norm) == pytest.approx(deflection)
+
+
+def test_a_surface_that_is_not_there_is_not_moved():
+    assert written(Controls(flap=0.3), controls=CommandProperties(flap=Surface(limit=0.0)))["fcs/flap-cmd-norm"] == 0.0
+
+
 def test_each_engine_gets_the_throttle():
     engines = ("fcs/throttle-cmd-norm", "fcs/throttle-cmd-norm[1]")
     assert written(Controls(throttle=0.4), engines) == dict.fromkeys(engines, 0.4)

@@ -94,15 +94,15 @@ def test_it_leaves_the_circle_onto_the_final_approach_only_aligned_and_low_enoug
 
 
 def test_more_crosswind_than_it_may_land_in_keeps_it_on_the_circle():
-    params = replace_params(crosswind_max=6.0)
-    landing, _ = on_final(300.0, 24.0, params=params, wind_north=7.0)
+    params, at_exit = replace_params(crosswind_max=6.0), joining()
+    higher = ((at_exit.height - 5.0) / 10.0) ** (1 / 7)  # than 10 m over the strip: so much more wind
+    landing, _ = on_final(300.0, 24.0, params=params, wind_north=7.0 * higher)
     assert landing.circle is not None
     assert landing.told == "it waits on the circle: 7.0 m/s of crosswind, crosswind_max is 6 m/s"
     landing.told = ""
-    at_exit = joining()
-    landing.step(replace(at_exit, wind_north=5.8), params, 0.02)  # not enough less to change its mind
+    landing.step(replace(at_exit, wind_north=5.8 * higher), params, 0.02)  # not enough less to change its mind
     assert landing.circle is not None and not landing.told
-    landing.step(replace(at_exit, wind_north=5.3), params, 0.02)
+    landing.step(replace(at_exit, wind_north=5.3 * higher), params, 0.02)
     assert landing.circle is None and landing.told == "it lands: 5.3 m/s of crosswind"
 
 

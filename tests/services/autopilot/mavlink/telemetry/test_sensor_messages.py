@@ -14,6 +14,7 @@ from tests.services.autopilot.mavlink.rig import CAR_FACTS, PLANE, PLANE_FACTS, 
 from uvf.maths import atmosphere
 from uvf.maths.rotations import FLU_FROM_FRD, from_euler, inverse, rotate, to_euler
 from uvf.mavlink import dialect as mav
+from uvf.models.vehicle.air import Surface
 from uvf.runtime.messages.convert import stamp
 
 LEVEL = Imu(specific_force=Vector3(x=0.1, y=0.2, z=9.81), angular_velocity=Vector3(x=0.1, y=0.2, z=0.3))
@@ -78,6 +79,15 @@ def test_surfaces_are_pulses_round_the_middle_in_the_order_of_a_plane():
     )
     m = newest(rig_with(surface_command=asked), "SERVO_OUTPUT_RAW", seconds=0.5)
     assert [getattr(m, f"servo{n}_raw") for n in range(1, 9)] == [2000, 1250, 1750, 1500, 1500, 1000, 0, 0]
+
+
+def test_an_aircraft_without_flaps_tells_of_none():
+    air = PLANE_FACTS.file.air
+    controls = changed(air.controls, flap=changed(air.controls.flap, limit=0.0), elevator=Surface(limit=0.1, negative_limit=0.2))
+    rig = Rig(plane=replace(PLANE_FACTS, file=changed(PLANE_FACTS.file, air=changed(air, controls=controls))))
+    rig.plane.sensed = {"surface_command": SurfaceCommand(elevator=-0.1, flap=0.2)}
+    m = newest(rig, "SERVO_OUTPUT_RAW", seconds=0.5)
+    assert (m.servo2_raw, m.servo5_raw) == (1250, 1000)
 
 
 def test_wheels_are_pulses_in_parts_of_the_top_speed():
