@@ -209,7 +209,7 @@ USAGE = {
     ("world", "check", "house", "--radius", "20"): "invalid value for '--radius': 20 m is above 10 m; try 'uvf world check --help'",
     ("world", "check", "house", "--radius", "0"): "invalid value for '--radius': 0 m is below 0.01 m; try",
     ("world", "new", "house", "x", "--rooms", "100"): "invalid value for '--rooms': 100 is above 40; try 'uvf world new house --help'",
-    ("world", "new", "x", "--rooms", "few"): "invalid value for '--rooms': 'few' is no whole number; try",
+    ("world", "new", "house", "x", "--rooms", "few"): "invalid value for '--rooms': 'few' is no whole number; try",
     ("up", "--rate", "nan"): "invalid value for '--rate': nan: give a number from 0 to 1000; try 'uvf up --help'",
     ("up", "--for", "-5"): "invalid value for '--for': -5: give a number at least 0.01; try 'uvf up --help'",
     ("up", "--for", "nan"): "invalid value for '--for': nan: give a number at least 0.01",
@@ -267,7 +267,7 @@ def test_the_help_says_what_each_measure_is_and_no_type_of_a_flag():
     said = " ".join(uvf("vehicle", "new", "--help", COLUMNS="160").stdout.split())
     assert "From the floor to the top of the body." in said and "From the middle of one wheel" in said
     assert "<bool>" not in said
-    assert all("<bool>" not in uvf(*words, "--help", COLUMNS="160").stdout for words in (("up",), ("bench",), ("world", "new"), ()))
+    assert all("<bool>" not in uvf(*words, "--help", COLUMNS="160").stdout for words in (("up",), ("bench",), ("world", "new", "house"), ()))
 
 
 def test_the_help_of_shift_says_degrees_and_keeps_what_stands_in_it():

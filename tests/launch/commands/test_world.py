@@ -54,9 +54,9 @@ def test_a_start_inside_of_something_is_told_by_the_check_with_a_mission():
 
 
 def test_a_new_world_is_drawn_and_not_made_twice(worlds, tmp_path):
-    said("new", "mine", "--rooms", "2", "--seed", "5")
-    assert "is there already" in said("new", "mine", code=2)
-    assert "cannot be called" in said("new", "../mine", code=2)
+    said("new", "house", "mine", "--rooms", "2", "--seed", "5")
+    assert "is there already" in said("new", "house", "mine", code=2)
+    assert "cannot be called" in said("new", "house", "../mine", code=2)
     said("picture", "mine", "--out", tmp_path / "mine.png")
     assert (tmp_path / "mine.png").read_bytes().startswith(b"\x89PNG")
     assert said("picture", "mine") == f"uvf: {worlds / 'mine' / 'picture.png'}\n"
