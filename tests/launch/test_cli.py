@@ -267,7 +267,8 @@ def test_the_help_says_what_each_measure_is_and_no_type_of_a_flag():
     said = " ".join(uvf("vehicle", "new", "--help", COLUMNS="160").stdout.split())
     assert "From the floor to the top of the body." in said and "From the middle of one wheel" in said
     assert "<bool>" not in said
-    assert all("<bool>" not in uvf(*words, "--help", COLUMNS="160").stdout for words in (("up",), ("bench",), ("world", "new", "house"), ()))
+    asked = (("up",), ("bench",), ("world", "new", "house"), ())
+    assert all("<bool>" not in uvf(*words, "--help", COLUMNS="160").stdout for words in asked)
 
 
 def test_the_help_of_shift_says_degrees_and_keeps_what_stands_in_it():
