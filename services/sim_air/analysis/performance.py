@@ -87,7 +87,7 @@ def _sweep(airframe: Airframe, begin: Condition, elevator: Surface) -> Iterator[
     near = begin
     for alpha in ALPHAS:
         found = find(airframe, replace(near, alpha=alpha), ("alpha", "throttle"))
-        if found is not None and found.airspeed > 0 and abs(elevator.norm(found.elevator)) <= 1 and abs(found.climb) < math.pi / 2:
+        if found is not None and found.airspeed > 0 and elevator.reaches(found.elevator) and abs(found.climb) < math.pi / 2:
             near = found
             yield found
 
@@ -115,6 +115,6 @@ def _level(airframe: Airframe, body: AirBody, speeds: Sequence[float], altitude:
     avionics = body.battery.avionics if body.battery else 0.0
     for airspeed in sorted(speeds, reverse=True):
         found = find(airframe, replace(near, airspeed=airspeed), ("airspeed", "climb"))
-        if found is not None and 0 <= found.throttle <= 1 and abs(body.controls.elevator.norm(found.elevator)) <= 1:
+        if found is not None and 0 <= found.throttle <= 1 and body.controls.elevator.reaches(found.elevator):
             near = found
             yield airframe.motor_power + avionics, found

@@ -104,9 +104,9 @@ class Airframe:
             raise BadInput(f"{self._path}: no {flight} at {start.airspeed} m/s: {trim.lacks}")
         for name in ("aileron", "elevator", "rudder"):
             surface, needed = getattr(self._body.controls, name), getattr(trim, name)
-            if abs(surface.norm(needed)) > 1 or (needed and not surface.limit):
-                reaches = f"it goes from {surface.lowest():g} to {surface.limit:g} rad"
-                raise BadInput(f"{self._path}: at {start.airspeed} m/s it needs {needed:.2f} rad of {name}; {reaches}")
+            if not surface.reaches(needed):
+                way = f"it goes from {surface.lowest():g} to {surface.limit:g} rad"
+                raise BadInput(f"{self._path}: at {start.airspeed} m/s it needs {needed:.2f} rad of {name}; {way}")
         return trim
 
     def stand(self, place: InitialState) -> None:

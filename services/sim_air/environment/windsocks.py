@@ -9,7 +9,7 @@ from services.sim_air.environment.wind import AirMass, AirRelativeState
 from uvf.maths.rotations import Floats
 from uvf.models.world.file import Windsock
 from uvf.models.world.wind import Wind
-from uvf.models.world.windsock import LENGTH, hangs
+from uvf.models.world.windsock import LENGTH, hangs, top
 from uvf.runtime.messages.convert import quaternion, stamp, vector
 
 FOLLOWS = 1.0  # s, in which a sock follows the wind
@@ -19,11 +19,11 @@ class Windsocks:
     """Each in air of its own, which passes it as fast as the mean wind carries it."""
 
     def __init__(
-        self, socks: Sequence[Windsock], wind: Wind, rng: Callable[[str], np.random.Generator], top: Callable[[float, float], float]
+        self, socks: Sequence[Windsock], wind: Wind, rng: Callable[[str], np.random.Generator], ground: Callable[[float, float], float]
     ) -> None:
-        """rng: of a sock by its name; top: height of the ground at (x, y) [m, world]."""
-        self._tops = {sock.name: np.array(sock.base) + np.array((0.0, 0.0, sock.height)) for sock in socks}
-        self._heights = {name: float(at[2]) - top(float(at[0]), float(at[1])) for name, at in self._tops.items()}
+        """rng: of a sock by its name; ground: its height at (x, y) [m, world]."""
+        self._tops = {sock.name: top(sock) for sock in socks}
+        self._heights = {name: float(at[2]) - ground(float(at[0]), float(at[1])) for name, at in self._tops.items()}
         self._air = {sock.name: AirMass(wind, LENGTH, rng(sock.name)) for sock in socks}
         self._shown: dict[str, Floats] = {}
 

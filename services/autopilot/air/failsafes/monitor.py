@@ -108,7 +108,7 @@ class FailsafeMonitor:
         if self._mode_manager.is_blind != self._was_blind or (self._waits and not committed):
             # What was ordered may have been given up for want of a position, or may be carried out by now.
             self._was_blind, self._waits = self._mode_manager.is_blind, False
-            order = order or self.watch.in_force(known)
+            order = order or in_force
         if order is not None and committed:
             self._waits = True
         elif order is not None and seen.airborne:

@@ -9,7 +9,7 @@ from services.gcs.state.vehicle_model import DisplayPose
 from services.gcs.view.drawing import Node
 from services.gcs.view.scene.scenery import coloured
 from uvf.models.world.file import Windsock
-from uvf.models.world.windsock import ORANGE, cloth, hangs
+from uvf.models.world.windsock import ORANGE, cloth, hangs, top
 
 Floats = NDArray[np.float64]
 
@@ -23,8 +23,7 @@ def sock_nodes(socks: Sequence[Windsock]) -> dict[str, Node]:
 
 def sock_places(socks: Sequence[Windsock], pointing: Mapping[str, Floats]) -> dict[str, DisplayPose]:
     """Their frames, by node name. pointing: attitudes wxyz (4,), world from sock, by name."""
-    tops = {sock.name: np.array(sock.base) + np.array((0.0, 0.0, sock.height)) for sock in socks}
-    return {_frame(sock): DisplayPose(tops[sock.name], pointing.get(sock.name, hangs(CALM))) for sock in socks}
+    return {_frame(sock): DisplayPose(top(sock), pointing.get(sock.name, hangs(CALM))) for sock in socks}
 
 
 def _frame(sock: Windsock) -> str:

@@ -23,9 +23,9 @@ class SignalFlow:
     def __init__(self, omega: Floats, signals: Sequence[str], inputs: Sequence[str] = ()) -> None:
         """signals: each needs one equation; inputs: what comes from outside, as gusts and noise."""
         self.omega = omega
-        self.s: Complex = np.asarray(1j * omega, dtype=np.complex128)
         below = np.geomspace(SLOWEST, omega[0], BELOW, endpoint=False)
         self._s: Complex = np.asarray(1j * np.concatenate((below, omega)), dtype=np.complex128)
+        self.s: Complex = self._s[BELOW:]
         self.inputs = tuple(inputs)
         self._row = {name: i for i, name in enumerate(signals)}
         self._input = {name: i for i, name in enumerate(inputs)}

@@ -42,6 +42,10 @@ class Surface(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         """The most negative deflection [rad]."""
         return -(self.limit if self.negative_limit is None else self.negative_limit)
 
+    def reaches(self, deflection: float) -> bool:
+        """Whether a deflection [rad] lies within the stops."""
+        return self.lowest() <= deflection <= self.limit
+
     def norm(self, deflection: float) -> float:
         """Command of a deflection [rad], 1 and -1 at full; 0 where there is no such surface."""
         full = self.limit if deflection >= 0 else -self.lowest()

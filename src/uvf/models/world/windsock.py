@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.rotations import from_euler
 from uvf.models.shapes.mesh_parts import MeshPart, lathe
+from uvf.models.world.file import Windsock
 
 Floats = NDArray[np.float64]
 
@@ -14,6 +15,12 @@ FULL = 7.72  # m/s, 15 kn: the wind in which it stands straight out (FAA AC 150/
 LENGTH, MOUTH, END = 2.4, 0.23, 0.11  # m, and radii at both ends (size 1 of the same)
 BANDS = 5  # each for 3 kn
 ORANGE, WHITE = (235, 110, 30), (245, 245, 245)
+
+
+def top(sock: Windsock) -> Floats:
+    """Place (3,) [m, world] where the mouth hangs."""
+    x, y, z = sock.base
+    return np.array((x, y, z + sock.height))
 
 
 def hangs(wind: Floats) -> Floats:
