@@ -116,15 +116,16 @@ def linearize(
 @vehicle_app.command()
 def tune(
     name: NameArgument,
-    write: Annotated[bool, typer.Option("--write", help="Put the figures into the vehicle.yaml.")] = False,
+    write: Annotated[bool, typer.Option("--write", help="Put the figures into the vehicle.yaml, and fly it.")] = False,
     picture: Annotated[Path | None, typer.Option(help="Where to draw loops and step responses, a .png.")] = None,
     firmness: Annotated[float, typer.Option(min=0.2, max=5.0, help="Above 1: nearer to the path, for more motion of the surfaces.")] = 1.0,
 ) -> None:
-    """The autopilot's figures of an aircraft from its own model: balance, gains, limits, and the loops' margins."""
+    """The autopilot's figures of an aircraft from its own model: balance, gains, limits, the loops' margins, flights that prove them."""
     from rich.console import Console
 
     from launch.vehicles import tuning
     from launch.vehicles.inspection import folder_of
+    from launch.vehicles.proof import prove
 
     with bad_input_is_one_line():
         found = tuning.tune(folder_of(name, _vehicles()), firmness)
@@ -136,7 +137,15 @@ def tune(
         console.print(table)
     for line in found.unmet:
         typer.echo(f"uvf: {line}")
-    typer.echo(f"uvf: {written} has them now" if written else f"uvf: 'uvf vehicle tune {name} --write' puts them into its vehicle.yaml")
+    if written is None:
+        typer.echo(f"uvf: 'uvf vehicle tune {name} --write' puts them into its vehicle.yaml and flies it")
+        return
+    typer.echo(f"uvf: {written} has them now; it flies to prove them")
+    with bad_input_is_one_line():
+        proof = prove(found.folder)
+    console.print(proof.table())
+    for line in proof.lines():
+        typer.echo(f"uvf: {line}")
 
 
 @vehicle_app.command()

@@ -3,6 +3,7 @@
 Each error and each way counts as a share of a budget. Near the ground comfort does not count.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -20,7 +21,9 @@ from uvf.models.vehicle.flight_params import AirParams
 
 OMEGA: Floats = np.geomspace(0.02, 150.0, 110)  # rad/s
 TURBULENCE, HEIGHT = "moderate", 100.0  # m
-BANK_OFF, PITCH_OFF = (0.05, 1.0), (0.01, 5.0)  # rad and s: disturbances that come on bank and pitch, and how long they last
+BANK_OFF, BANK_LASTS, PITCH_OFF = (0.05, 1.0), (0.015, 20.0), (0.01, 5.0)
+"""rad and s: disturbances that come on bank and pitch, and how long they last. A bank that is off as long as a turn is what a circle meets:
+its feed-forward is not that of this aircraft."""
 LATERAL = {
     "roll_time": (0.1, 2.0),
     "roll_p": (1e-4, 2.0),
@@ -157,7 +160,8 @@ def _gliding(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
 
 def _aside(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
     """Error beside the path [m] in gusts and after disturbances of bank, and the way of ailerons and rudder [deg/s]."""
-    error = float(np.hypot(air.rms(flow, "aside", "vpr"), disturbed(flow, "aside", "bank", *BANK_OFF)))
+    off = [disturbed(flow, "aside", "bank", *by) for by in (BANK_OFF, BANK_LASTS)]
+    error = math.hypot(air.rms(flow, "aside", "vpr"), *off)
     return error, WAY * sum(air.rms(flow, surface, "vpr", rate=True) for surface in ("servo_a", "servo_r"))
 
 

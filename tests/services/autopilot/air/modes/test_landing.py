@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import msgspec
 import numpy as np
@@ -104,6 +105,22 @@ def test_more_crosswind_than_it_may_land_in_keeps_it_on_the_circle():
     assert landing.circle is not None and not landing.told
     landing.step(replace(at_exit, wind_north=5.3 * higher), params, 0.02)
     assert landing.circle is None and landing.told == "it lands: 5.3 m/s of crosswind"
+
+
+def wind_that(swings, mean, seconds=120.0):
+    """Circles that were flown, while the wind swings along the lane by so much [m/s] about its mean, once in half a minute."""
+    landing = LandingMode(cruising(), lambda now: lane_for(Place(0.0, 0.0, 0.0), [STRIP], now), FlightContext(), PARAMS)
+    circles = [landing.circle]
+    for t in np.arange(0.0, seconds, 0.1):
+        wind = mean + swings * math.sin(math.tau * t / 30.0)
+        landing.step(cruising(east=200.0, wind_east=wind), PARAMS, 0.1)
+        circles.append(landing.circle)
+    return [circle for before, circle in pairwise([None, *circles]) if circle != before]
+
+
+def test_turbulence_does_not_turn_the_lane_and_a_wind_that_is_found_out_does():
+    assert len(wind_that(swings=3.0, mean=0.0)) == 1
+    assert len(wind_that(swings=1.0, mean=5.0)) == 2
 
 
 def test_a_wind_along_the_lane_and_a_failsafe_do_not_wait():
