@@ -194,7 +194,8 @@ def _touch(flight: ProofFlight) -> dict[str, float]:
     if not taken.any():
         return {}
     at = int(np.flatnonzero(taken)[0])
-    return {PLACE: float(np.hypot(*flight.position[at, :2])), SINK: -float(flight.climb[at])}
+    off = flight.position[at, :2] - flight.course.centre
+    return {PLACE: float(np.hypot(*off)), SINK: -float(flight.climb[at])}
 
 
 def _rms(x: Floats) -> float:

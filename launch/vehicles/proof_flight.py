@@ -100,7 +100,7 @@ class ProofCourse:
             Waypoint(x=self.end[0], y=north, z=heights[2]),
             Waypoint(kind="orbit", x=x, y=y, z=HEIGHT, radius=self.radius, turns=TURNS),
         ]
-        return JobFile(mission=[*items, Waypoint(kind="land")] if self.air.lands else items)
+        return JobFile(mission=[*items, Waypoint(kind="land", x=x, y=y)] if self.air.lands else items)
 
 
 class Steps(NamedTuple):

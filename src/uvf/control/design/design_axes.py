@@ -58,6 +58,7 @@ STIFF = {"roll_p": 0.15, "roll_i": 0.3, "pitch_p": 0.3, "pitch_i": 1.0}
 STEEP = 0.3  # 1/s, with which a path is approached at least
 SLOWEST, SLOWER = 0.5, 4.0  # s, and of the delays: the longest time constant of an attitude
 ASIDE, ABOVE, FASTER = 0.5, 0.5, 0.7  # m, m, m/s: errors in turbulence, each worth as much as the surfaces' whole budget
+AT_SPEED = 20.0  # m/s, up to which they are: those of a faster aircraft grow with its speed
 FINAL_SHARE, FINAL_WAY = 0.3, 3.0  # of ABOVE, of PITCH_WAY: budgets near the ground
 LEVEL = 0.05  # rad of bank in turbulence, worth a whole budget there
 FLARES = 1.5  # times altitude_p, to begin with
@@ -120,8 +121,13 @@ def _cruise(aircraft: AircraftLoops, params: AirParams) -> FlightCondition:
     return min(aircraft.conditions, key=lambda flight: abs(flight.airspeed - params.trim_airspeed))
 
 
+def _firmness(params: AirParams, firmness: float) -> float:
+    """What errors count, in shares of their budgets for 20 m/s."""
+    return firmness / max(1.0, params.trim_airspeed / AT_SPEED)
+
+
 def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
-    air = _air(aircraft, params)
+    air, firmness = _air(aircraft, params), _firmness(params, firmness)
 
     def wanted(flow: SignalFlow) -> float:
         error, way = _aside(air, flow)
@@ -135,7 +141,7 @@ def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
 
 
 def _longitudinal(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
-    air = _air(aircraft, params)
+    air, firmness = _air(aircraft, params), _firmness(params, firmness)
 
     def wanted(flow: SignalFlow) -> float:
         error, way = _above(air, flow)
@@ -147,7 +153,7 @@ def _longitudinal(aircraft: AircraftLoops, params: AirParams, firmness: float = 
 
 
 def _gliding(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
-    air = _air(aircraft, params)
+    air, firmness = _air(aircraft, params), _firmness(params, firmness)
 
     def wanted(flow: SignalFlow) -> float:
         error = np.hypot(air.rms(flow, "airspeed", "uwq"), disturbed(flow, "airspeed", "pitch", *PITCH_OFF))
