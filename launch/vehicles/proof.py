@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
-from launch.vehicles.proof_flight import LEG, Air, Floats, ProofFlight, proof_flight
+from launch.vehicles.proof_flight import LEG, Floats, ProofAir, ProofFlight, proof_flight
 
 Indices = NDArray[np.intp]
 
-AIRS = {"calm": Air("", True), "light turbulence": Air("light", True), "moderate turbulence": Air("moderate", False)}
+AIRS = {"calm": ProofAir("", True), "light turbulence": ProofAir("light", True), "moderate turbulence": ProofAir("moderate", False)}
 ENTRY, EXIT = 9.0, 6.0  # s of cruise, of a leg that belong to its turns
 NEAR = 0.5  # of the circle's radius, from where it belongs
 ENTERED, TURNED = 0.5, 1.75  # laps, between which the circle counts
@@ -33,7 +33,7 @@ SURFACES, PLACE, SINK = "way of the surfaces", "from the place to land at", "sin
 
 
 @dataclass(frozen=True)
-class Goal:
+class ProofGoal:
     """Of one figure, at most in each of the AIRS; None: nothing is wanted of it there."""
 
     name: str
@@ -47,15 +47,15 @@ class Goal:
 
 
 GOALS = (
-    Goal(BANK, "%", (15.0, None, None)),
-    Goal(CLIMB, "%", (25.0, None, None)),
-    Goal(LEGS, "m", (0.3, 0.6, 1.0)),
-    Goal(HEIGHTS, "m", (1.0, 1.2, 1.5)),
-    Goal(CORNER, "m", (1.0, 2.0, 3.0)),
-    Goal(CIRCLE, "m", (0.3, 0.6, 1.0)),
-    Goal(SURFACES, "deg/s", (0.8, 4.5, 9.0)),
-    Goal(PLACE, "m", (10.0, 15.0, None)),
-    Goal(SINK, "m/s", (1.2, 1.5, None)),
+    ProofGoal(BANK, "%", (15.0, None, None)),
+    ProofGoal(CLIMB, "%", (25.0, None, None)),
+    ProofGoal(LEGS, "m", (0.3, 0.6, 1.0)),
+    ProofGoal(HEIGHTS, "m", (1.0, 1.2, 1.5)),
+    ProofGoal(CORNER, "m", (1.0, 2.0, 3.0)),
+    ProofGoal(CIRCLE, "m", (0.3, 0.6, 1.0)),
+    ProofGoal(SURFACES, "deg/s", (0.8, 4.5, 9.0)),
+    ProofGoal(PLACE, "m", (10.0, 15.0, None)),
+    ProofGoal(SINK, "m/s", (1.2, 1.5, None)),
 )
 
 
@@ -66,12 +66,12 @@ class Proof:
     flights: Sequence[ProofFlight]
     figures: Sequence[Mapping[str, float]]
 
-    def most(self, goal: Goal) -> list[float | None]:
+    def most(self, goal: ProofGoal) -> list[float | None]:
         """What is wanted of it, in each of the AIRS; nothing of climbs and heights without an engine."""
         course = self.flights[0].course
         return [None] * len(AIRS) if goal.name in (CLIMB, HEIGHTS) and course.glide else goal.at(course.airspeed)
 
-    def met(self, goal: Goal) -> bool:
+    def met(self, goal: ProofGoal) -> bool:
         """Whether it is, in each of the AIRS."""
         pairs = zip(self.figures, self.most(goal), strict=True)
         return all(most is None or figures.get(goal.name, math.inf) <= most for figures, most in pairs)

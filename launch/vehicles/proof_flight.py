@@ -47,7 +47,7 @@ LONGEST = 900.0  # s
 STICKS_HZ = 20.0
 
 
-class Air(NamedTuple):
+class ProofAir(NamedTuple):
     """What a proof is flown in: turbulence of this severity, "" for none, and whether one lands in it."""
 
     severity: str
@@ -61,7 +61,7 @@ class ProofCourse:
     airspeed: float  # m/s
     radius: float  # m, of the circle
     glide: float  # rad, slope down of all of it; 0 with an engine
-    air: Air
+    air: ProofAir
 
     @property
     def corner(self) -> tuple[float, float]:
@@ -142,7 +142,7 @@ class ProofFlight:
     """Of the autopilot, a line each."""
 
 
-def proof_flight(folder: Path, air: Air) -> ProofFlight:
+def proof_flight(folder: Path, air: ProofAir) -> ProofFlight:
     """One flight of the vehicle in this folder. Raises BadInput."""
     file = load_vehicle(folder.parent, folder.name)
     assert file.air is not None
@@ -155,7 +155,7 @@ def proof_flight(folder: Path, air: Air) -> ProofFlight:
     return pilot.flight(course)
 
 
-def _site(folder: Path, file: VehicleFile, air: Air) -> tuple[Scenario, ProofCourse]:
+def _site(folder: Path, file: VehicleFile, air: ProofAir) -> tuple[Scenario, ProofCourse]:
     """A mission over flat ground."""
     params = convert(file.params.get(SERVICE, {}), AirParams, str(folder / "vehicle.yaml"), ("params", SERVICE))
     glide = 0.0 if params.throttle_climb else STEEPER * params.idle_sink / params.trim_airspeed
