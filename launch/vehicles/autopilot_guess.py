@@ -1,5 +1,6 @@
 """The figures of an airframe that the air autopilot needs, from steady flights and linear models of the running model."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +20,7 @@ from uvf.maths.geodesy import GRAVITY
 from uvf.maths.rotations import Floats
 from uvf.maths.state_space import jacobian
 from uvf.models.vehicle.air import AirBody
+from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.yaml_data import BadInput
 
 OTHERS = 1.15, 1.07, 0.93  # of the trim speed, the first at which it flies
@@ -26,7 +28,8 @@ SLOWEST, FASTEST = 0.8, 1.25  # of the trim speed
 STEEPEST = 0.12  # climb and sink over the speed
 SHARE = 0.7  # of the climb at full throttle
 DIVING, IDLE_SHARE = 1.15, 0.9  # of the trim speed, that a steep descent may take; of the sink with an idling engine there
-BANK = 0.7  # tangent of the bank of a holding circle
+BANK, HOLDING = 0.7, 0.75  # tangent of the bank of a holding circle, and its largest share of that of a planned turn
+TURN_SHARE, LEAST_BANK = 0.6, 0.3  # of the elevator's way from level flight to its stop: the rest begins and ends a turn; rad
 MARGIN = 1.1  # of a speed over that at which the wing stalls
 HIGHEST_ALPHA = 0.25  # rad, where a model tells of no stall
 IDLING = (0.0, 0.15, 0.3)
@@ -49,6 +52,8 @@ def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
     found["rudder_force"] = _within(models.lateral.slope("v", "delta_r"), -50.0, 50.0)
     found["flap_alpha"] = _within(_flap_lift(airframe, models.trim), 0.0, 1.0)
     found |= _slowest(airframe, body, found) | {"idle_sink": _within(_idle_sink(airframe, body, body.trim_speed), 0.1, 20.0)}
+    found["turn_bank"] = _turn_bank(body, found)
+    found["hold_radius"] = max(body.trim_speed**2 / (GRAVITY * min(BANK, HOLDING * math.tan(found["turn_bank"]))), 20.0)
     found["crosswind_max"] = _crosswind(models, body, found["min_airspeed"])
     dives = IDLE_SHARE * _idle_sink(airframe, body, DIVING * body.trim_speed)
     climbs = SHARE * (1 - found["trim_throttle"]) / max(found["throttle_climb"], 1e-3)
@@ -121,6 +126,21 @@ def _slowest(airframe: Airframe, body: AirBody, found: Mapping[str, float]) -> d
     return {"alpha_max": alpha, "min_airspeed": max(SLOWEST * body.trim_speed, MARGIN * stalled)}
 
 
+def _turn_bank(body: AirBody, found: Mapping[str, float]) -> float:
+    """rad, of planned turns: the usual one, or as steep as a share of the elevator holds against angle of attack and pitch damping."""
+    speed, usual = body.trim_speed, AirParams().turn_bank
+
+    def elevator(bank: float) -> float:
+        load = 1 / math.cos(bank)
+        alpha = found["alpha_zero_lift"] + found["alpha_per_load"] * load * GRAVITY / speed**2
+        rate = GRAVITY / speed * (load - 1 / load)
+        return found["elev_zero_alpha"] + found["elev_per_alpha"] * alpha - found["pitch_ff"] * rate
+
+    most = (1 - TURN_SHARE) * elevator(0.0) + TURN_SHARE * body.controls.elevator.lowest()
+    held = [bank for bank in np.arange(LEAST_BANK, usual, 0.01).tolist() if elevator(bank) > most]
+    return usual if elevator(usual) > most else max(held, default=LEAST_BANK)
+
+
 def _crosswind(models: LinearModels, body: AirBody, airspeed: float) -> float:
     """m/s, in which a share of the rudder still turns the nose along the strip at an airspeed [m/s], and no more than is usual."""
     side = models.lateral
@@ -164,7 +184,6 @@ def _measures(speed: float) -> dict[str, float]:
     return {
         "trim_airspeed": speed,
         "max_airspeed": FASTEST * speed,
-        "hold_radius": max(speed**2 / (GRAVITY * BANK), 20.0),
     }
 
 

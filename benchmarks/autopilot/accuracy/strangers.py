@@ -7,7 +7,7 @@ import shutil
 import sys
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ import jsbsim
 import numpy as np
 import yaml
 
-from benchmarks.autopilot.accuracy.cases import mean
+from benchmarks.autopilot.accuracy.cases import ONE, SHOWN, mean
 from benchmarks.autopilot.accuracy.flight import Case, scored
 from benchmarks.autopilot.accuracy.kept import FOLDER, digest, figures_of, several
 from launch.commands.bench import Figures
@@ -27,17 +27,7 @@ from uvf.models.scenario import ROOT
 SHIPPED = Path(jsbsim.get_default_root_dir()) / "aircraft"
 OWN = ROOT / "vehicles"
 SEEDS = (1, 2, 3)
-WINDS = {
-    "calm": ((0.0, 0.0), ""),
-    "5 from N": ((-5.0, 0.0), ""),
-    "5 from E": ((0.0, -5.0), ""),
-    "10 from N": ((-10.0, 0.0), ""),
-    "10 from E": ((0.0, -10.0), ""),
-    "light": ((0.0, 0.0), "light"),
-    "moderate": ((0.0, 0.0), "moderate"),
-    "10 from E, moderate": ((0.0, -10.0), "moderate"),
-}
-METRICS = ("xtrack", "path", "orbit", "level", "slope", "orbit alt", "V sd", "p95", "max", "deg/s", "orbit deg/s", "throttle/s", "bank")
+METRICS = tuple(metric for metric in SHOWN if metric not in ("V mean", "wind"))
 CORNERS = (11, 12, 13, 14)
 OFF, LAG_OFF = 0.3, 0.5  # of a term of the aerodynamics, of the servos' lag
 SIDES = ("SIDE", "Y", "ROLL", "PITCH", "YAW")
@@ -76,7 +66,6 @@ STRANGERS = {
 
 def root_of(stranger: Stranger) -> Path:
     """A folder with its vehicle, imported and tuned, and the worlds; made once and kept as long as nothing has changed."""
-    nominal = Stranger(stranger.model, stranger.servo_lag, stranger.power)
     root = FOLDER / f"stranger-{digest(__file__, repr(stranger))}"
     if not root.is_dir():
         part = root.with_suffix(".part")
@@ -87,7 +76,7 @@ def root_of(stranger: Stranger) -> Path:
         if stranger.off is None:
             _make(stranger, folder)
         else:
-            shutil.copytree(root_of(nominal) / "vehicles" / stranger.name, folder)
+            shutil.copytree(root_of(replace(stranger, off=None)) / "vehicles" / stranger.name, folder)
             _spoil(folder, stranger.model.stem, stranger.off)
         part.rename(root)
     return root
@@ -146,6 +135,11 @@ def _spoil(folder: Path, model: str, seed: int) -> None:
     _with_air(folder, lambda air: air.update(servo_lag=air["servo_lag"] * (1 + LAG_OFF * (-1) ** seed)))
 
 
+def seeds_of(wind: str) -> list[Case]:
+    """The cases of a wind, by its name."""
+    return [replace(ONE[wind][0], seed=seed) for seed in SEEDS]
+
+
 def flown(stranger: Stranger, case: Case) -> dict[str, float]:
     """Figures of one flight."""
     return scored(stranger.name, case, "good", {}, "energy", root_of(stranger))
@@ -155,17 +149,18 @@ def table(name: str, data: Path | None = None) -> Figures:
     """All winds, three seeds each."""
     stranger = STRANGERS[name]
     figures_of(made, (stranger,))
-    cases = {wind: [Case(steady, severity, seed) for seed in SEEDS] for wind, (steady, severity) in WINDS.items()}
+    cases = {wind: seeds_of(wind) for wind in ONE}
     found = several(flown, [(stranger, case) for rows in cases.values() for case in rows])
     return {f"{name}, {wind}": _row([next(found) for _ in rows]) for wind, rows in cases.items()}
 
 
 def corners(name: str, data: Path | None = None) -> Figures:
     """Aircraft at the corners of the spread, in calm air and in moderate turbulence, with the gains of the one that they are off from."""
-    nominal = STRANGERS[name]
-    spoiled = [Stranger(nominal.model, nominal.servo_lag, nominal.power, seed) for seed in CORNERS]
+    spoiled = [replace(STRANGERS[name], off=seed) for seed in CORNERS]
+    for one in spoiled:
+        root_of(one)  # one after the other: all of them are made from the same
     winds = ("calm", "moderate")
-    found = several(flown, [(one, Case(*WINDS[wind], 1)) for wind in winds for one in spoiled])
+    found = several(flown, [(one, seeds_of(wind)[0]) for wind in winds for one in spoiled])
     return {f"{name}, {wind}, off": _row([next(found) for _ in spoiled]) for wind in winds}
 
 
@@ -186,8 +181,8 @@ CASES = {f"{name}{what}": partial(function, name) for name in STRANGERS for what
 def _said(name: str, wanted: list[str]) -> Iterator[str]:
     stranger = STRANGERS[name]
     yield str(made(stranger))
-    for wind in wanted or list(WINDS):
-        rows = list(several(flown, [(stranger, Case(*WINDS[wind], seed)) for seed in SEEDS]))
+    for wind in wanted or list(ONE):
+        rows = list(several(flown, [(stranger, case) for case in seeds_of(wind)]))
         yield f"{wind:22} {'  '.join(f'{metric} {value:.2f}' for metric, value in _row(rows).items())}"
 
 

@@ -21,7 +21,7 @@ from uvf.models.vehicle.flight_params import AirParams
 
 OMEGA: Floats = np.geomspace(0.02, 150.0, 110)  # rad/s
 TURBULENCE, HEIGHT = "moderate", 100.0  # m
-BANK_OFF, BANK_LASTS, PITCH_OFF = (0.05, 1.0), (0.015, 20.0), (0.01, 5.0)
+BANK_OFF, BANK_LASTS, PITCH_OFF = (0.05, 1.0), (0.025, 20.0), (0.01, 5.0)
 """rad and s: disturbances that come on bank and pitch, and how long they last. A bank that is off as long as a turn is what a circle meets:
 its feed-forward is not that of this aircraft."""
 LATERAL = {
