@@ -52,7 +52,7 @@ def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
     found["rudder_force"] = _within(models.lateral.slope("v", "delta_r"), -50.0, 50.0)
     found["flap_alpha"] = _within(_flap_lift(airframe, models.trim), 0.0, 1.0)
     found |= _slowest(airframe, body, found) | {"idle_sink": _within(_idle_sink(airframe, body, body.trim_speed), 0.1, 20.0)}
-    found["turn_bank"] = _turn_bank(body, found)
+    found["turn_bank"] = planned_bank(body, found)
     found["hold_radius"] = max(body.trim_speed**2 / (GRAVITY * min(BANK, HOLDING * math.tan(found["turn_bank"]))), 20.0)
     found["crosswind_max"] = _crosswind(models, body, found["min_airspeed"])
     dives = IDLE_SHARE * _idle_sink(airframe, body, DIVING * body.trim_speed)
@@ -126,7 +126,7 @@ def _slowest(airframe: Airframe, body: AirBody, found: Mapping[str, float]) -> d
     return {"alpha_max": alpha, "min_airspeed": max(SLOWEST * body.trim_speed, MARGIN * stalled)}
 
 
-def _turn_bank(body: AirBody, found: Mapping[str, float]) -> float:
+def planned_bank(body: AirBody, found: Mapping[str, float]) -> float:
     """rad, of planned turns: the usual one, or as steep as a share of the elevator holds against angle of attack and pitch damping."""
     speed, usual = body.trim_speed, AirParams().turn_bank
 
