@@ -9,7 +9,9 @@ from uvf.models.world.file import Strip
 
 Floats = NDArray[np.float64]
 FLEW = 5.0  # m above where it comes to rest, from which on it has flown
-STANDING = 0.03  # m above where it comes to rest: the wheels carry it
+LOW = 1.0  # m above where it comes to rest, below which it touches: a tail-dragger's centre of gravity is still to sink
+AT_ONCE, TAKEN, SHARE = 0.2, 0.3, 0.5  # s in which the ground takes this much of its sink [m/s], and this share; no flare does
+ROLLS, LEVEL = 1.0, 0.05  # s over which it keeps its height within this [m]: it has come down like a feather
 BEFORE = 0.2  # s before touching, over which the sink is taken
 AIM_SHARE, AIM_MOST = 0.25, 60.0  # of the length of a strip, m: how far behind the threshold wheels are to touch
 
@@ -18,11 +20,16 @@ def touchdown(track: Floats) -> int | None:
     """Index of the first sample (n, 4: t, x, y, z) on the ground after the flight; None unless it flew and stands at the end."""
     if len(track) < 100 or speed_at_end(track) > 0.5:
         return None
-    height = track[:, 3] - track[-1, 3]
+    t, height = track[:, 0], track[:, 3] - track[-1, 3]
     flew = np.flatnonzero(height > FLEW)
     if not len(flew):
         return None
-    return int(flew[-1] + np.argmax(height[flew[-1] :] < STANDING))
+    climb = np.gradient(height, t)
+    taken = np.interp(t + AT_ONCE, t, climb) - climb
+    stopped = (taken > TAKEN) & (taken > -SHARE * climb) & (climb < 0.0)
+    rolls = np.logical_and.reduce([abs(np.interp(t + ahead, t, height) - height) < LEVEL for ahead in (ROLLS / 2, ROLLS)])
+    touched = (height < LOW) & (stopped | rolls)
+    return int(flew[-1] + np.argmax(touched[flew[-1] :]))
 
 
 def speed_at_end(track: Floats) -> float:

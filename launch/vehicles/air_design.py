@@ -48,7 +48,7 @@ def modelled(airframe: Airframe, body: AirBody, params: AirParams) -> ModelledAi
     found = [_or_nothing(airframe, ABOVE_SLOWEST * params.min_airspeed, path), cruise, _or_nothing(airframe, params.max_airspeed, path)]
     with held_still(airframe):
         behind = lags(airframe, cruise.trim, body.physics_hz)
-    aileron, elevator, rudder = ((_servo_lag(body, name), behind[name]) for name in ("aileron", "elevator", "rudder"))
+    aileron, elevator, rudder = ((body.lag_of(getattr(body.controls, name)), behind[name]) for name in ("aileron", "elevator", "rudder"))
     delays = ActuatorDelays(aileron, elevator, rudder, (body.controls.throttle.lag, behind["throttle"]))
     conditions = [_condition(models, airframe.span) for models in found if models is not None]
     return ModelledAircraft(AircraftLoops(conditions, delays, airframe.powered), _condition(cruise, airframe.span))
@@ -92,8 +92,3 @@ def _condition(models: LinearModels, span: float) -> FlightCondition:
     speed = models.trim.airspeed
     eas = speed * math.sqrt(standard_density(models.trim.altitude) / RHO0)
     return FlightCondition(speed, eas, models.trim.alpha, models.longitudinal, models.lateral, speed, span)
-
-
-def _servo_lag(body: AirBody, name: str) -> float:
-    own: float | None = getattr(body.controls, name).lag
-    return body.servo_lag if own is None else own

@@ -29,7 +29,7 @@ STEEPEST = 0.12  # climb and sink over the speed
 SHARE = 0.7  # of the climb at full throttle
 DIVING, IDLE_SHARE = 1.15, 0.9  # of the trim speed, that a steep descent may take; of the sink with an idling engine there
 BANK, HOLDING = 0.7, 0.75  # tangent of the bank of a holding circle, and its largest share of that of a planned turn
-TURN_SHARE, LEAST_BANK = 0.6, 0.3  # of the elevator's way from level flight to its stop: the rest begins and ends a turn; rad
+TURN_SHARE, LIFT_SHARE, LEAST_BANK = 0.6, 0.9, 0.3  # of the elevator's way from level flight to its stop, of the lift; rad
 MARGIN = 1.1  # of a speed over that at which the wing stalls
 HIGHEST_ALPHA = 0.25  # rad, where a model tells of no stall
 IDLING = (0.0, 0.15, 0.3)
@@ -127,7 +127,10 @@ def _slowest(airframe: Airframe, body: AirBody, found: Mapping[str, float]) -> d
 
 
 def planned_bank(body: AirBody, found: Mapping[str, float]) -> float:
-    """rad, of planned turns: the usual one, or as steep as a share of the elevator holds against angle of attack and pitch damping."""
+    """Bank [rad] of planned turns: the usual one, or as steep as shares of the lift and of the elevator carry and hold.
+
+    The elevator holds the angle of attack, and the pitch rate against its damping; the rest of it begins and ends turns.
+    """
     speed, usual = body.trim_speed, AirParams().turn_bank
 
     def elevator(bank: float) -> float:
@@ -137,8 +140,10 @@ def planned_bank(body: AirBody, found: Mapping[str, float]) -> float:
         return found["elev_zero_alpha"] + found["elev_per_alpha"] * alpha - found["pitch_ff"] * rate
 
     most = (1 - TURN_SHARE) * elevator(0.0) + TURN_SHARE * body.controls.elevator.lowest()
-    held = [bank for bank in np.arange(LEAST_BANK, usual, 0.01).tolist() if elevator(bank) > most]
-    return usual if elevator(usual) > most else max(held, default=LEAST_BANK)
+    lifts = (found["alpha_max"] - found["alpha_zero_lift"]) * speed**2 / (found["alpha_per_load"] * GRAVITY)
+    carried = math.acos(min(1 / max(LIFT_SHARE * lifts, 1.0), math.cos(LEAST_BANK)))
+    held = [bank for bank in np.arange(LEAST_BANK, min(usual, carried), 0.01).tolist() if elevator(bank) > most]
+    return usual if carried > usual and elevator(usual) > most else max(held, default=LEAST_BANK)
 
 
 def _crosswind(models: LinearModels, body: AirBody, airspeed: float) -> float:

@@ -10,17 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
+from launch.scoring import touchdown
 from launch.vehicles.proof_flight import LEG, Floats, ProofAir, ProofFlight, proof_flight
+from uvf.control.design.design_axes import longer
+from uvf.models.world.wind import TurbulenceFile
 
 Indices = NDArray[np.intp]
 
-AIRS = {"calm": ProofAir("", True), "light turbulence": ProofAir("light", True), "moderate turbulence": ProofAir("moderate", False)}
+AIRS = {
+    "calm": ProofAir(None, True),
+    "light turbulence": ProofAir(TurbulenceFile("light"), True),
+    "moderate turbulence": ProofAir(TurbulenceFile("moderate"), False),
+}
 ENTRY, EXIT = 9.0, 6.0  # s of cruise, of a leg that belong to its turns
 NEAR = 0.5  # of the circle's radius, from where it belongs
 ENTERED, TURNED = 0.5, 1.75  # laps, between which the circle counts
-DESIGN_SPEED = 20.0  # m/s; what is wanted in m grows with a higher airspeed
-LOW = 3.0  # m above where it stands in the end, the centre of gravity of a tail-dragger may touch so high
-AT_ONCE, TAKEN, LEAST_SINK = 0.2, 0.5, 0.1  # s in which this share of the sink is gone when it touches; m/s
 SETTLED = 1.5  # s at the end of a step
 BANK, CLIMB = "bank beyond a step of the stick", "climb beyond a step of the stick"
 LEGS, HEIGHTS, CORNER, CIRCLE = (
@@ -42,7 +46,7 @@ class ProofGoal:
 
     def at(self, airspeed: float) -> list[float | None]:
         """What is wanted of an aircraft of this cruise speed [m/s]."""
-        by = max(1.0, airspeed / DESIGN_SPEED) if self.unit == "m" else 1.0
+        by = longer(airspeed) if self.unit == "m" else 1.0
         return [most and by * most for most in self.most]
 
 
@@ -82,7 +86,7 @@ class Proof:
             if flight.crash:
                 yield f"proof flight, {air}: crashed, {flight.crash}"
             elif not flight.complete:
-                yield f"proof flight, {air}: not at its end after {flight.t[-1]:.0f} s; the last that was told: {flight.events[-1]}"
+                yield f"proof flight, {air}: not at its end after {flight.t[-1]:.0f} s; what it said last: {flight.last_words}"
         if missed := [goal.name for goal in GOALS if not self.met(goal)]:
             yield f"proof flight: not met: {'; '.join(missed)}"
 
@@ -110,7 +114,7 @@ def prove(folder: Path) -> Proof:
 def figures(flight: ProofFlight) -> dict[str, float]:
     """Those of GOALS, as far as it came."""
     steps, found = flight.steps, {}
-    if flight.t[-1] > steps.end and not flight.course.air.severity:
+    if flight.t[-1] > steps.end and flight.course.air.turbulence is None:
         found[BANK] = _beyond(flight, np.abs(flight.bank), steps.right, steps.left)
         if steps.hold > steps.climb:
             found[CLIMB] = _beyond(flight, flight.climb, steps.climb, steps.hold)
@@ -138,21 +142,21 @@ class Way:
         near = NEAR * course.radius
         first = after & (y > north - (LEG - ENTRY) * v) & (y < north - EXIT * v) & (np.abs(x) < near)
         second = after & (x > east + ENTRY * v) & (x < end - EXIT * v) & (np.abs(y - north) < near)
-        around = after & (np.abs(_outside(flight)) < near)
-        circle = np.flatnonzero(around)
-        if len(circle):
-            since = (flight.t[circle] - flight.t[circle[0]]) / course.lap
-            circle = circle[(since > ENTERED) & (since < TURNED)]
-        found = cls(np.flatnonzero(first), np.flatnonzero(second), circle)
+        around = np.flatnonzero(after & (np.abs(_outside(flight)) < near))
+        if not len(around):
+            return None
+        begins = flight.t[around[0]]
+        since, before = (flight.t[around] - begins) / course.lap, flight.t < begins
+        circle = around[(since > ENTERED) & (since < TURNED)]
+        found = cls(np.flatnonzero(first & before), np.flatnonzero(second & before), circle)
         return found if len(found.north) and len(found.east) and len(circle) else None
 
 
 def _way(flight: ProofFlight, way: Way) -> dict[str, float]:
     course, (x, y, z), (_, north) = flight.course, flight.position.T, flight.course.corner
     beside = np.concatenate([x[way.north], y[way.east] - north])
-    run = np.concatenate([y[way.north], north + x[way.east]])
     bend = flight.t[way.north[-1]], flight.t[way.east[0]]
-    above = z[np.concatenate([way.north, way.east])] - (course.start - math.tan(course.glide) * run)
+    above = z[np.concatenate([way.north, way.east])] - course.start
     return {
         LEGS: _rms(beside),
         **({} if course.glide else {HEIGHTS: _rms(above)}),
@@ -186,16 +190,10 @@ def _beyond(flight: ProofFlight, signal: Floats, begin: float, end: float) -> fl
 
 
 def _touch(flight: ProofFlight) -> dict[str, float]:
-    """Where it came down: where the ground takes away its sink at once, as no flare does. Nothing where it came down like a feather."""
-    height = flight.position[:, 2] - flight.position[-1, 2]
-    low = (flight.t > flight.steps.end) & (height < LOW)
-    later = np.interp(flight.t + AT_ONCE, flight.t, flight.climb)
-    taken = low & (flight.climb < -LEAST_SINK) & (later - flight.climb > TAKEN * -flight.climb)
-    if not taken.any():
+    track = np.column_stack([flight.t, flight.position])
+    if (at := touchdown.touchdown(track)) is None:
         return {}
-    at = int(np.flatnonzero(taken)[0])
-    off = flight.position[at, :2] - flight.course.centre
-    return {PLACE: float(np.hypot(*off)), SINK: -float(flight.climb[at])}
+    return {PLACE: float(np.hypot(*(flight.position[at, :2] - flight.course.centre))), SINK: touchdown.sink(track)}
 
 
 def _rms(x: Floats) -> float:

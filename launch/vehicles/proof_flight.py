@@ -1,6 +1,6 @@
 """The flight that a tuning is proved by: steps of the sticks, then a mission with a leg, a corner, a circle and a landing.
 
-Flown by the simulator and the autopilot as in any mission, through their topics and requests alone, and written down from the truth.
+Flown by the simulator and the autopilot as in any mission, through their topics and requests alone.
 """
 
 import math
@@ -28,7 +28,7 @@ from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.world.file import load_world
 from uvf.models.world.wind import TurbulenceFile, Wind
-from uvf.models.yaml_data import convert
+from uvf.models.yaml_data import BadInput, convert
 from uvf.runtime.messages.convert import stamp, wxyz
 from uvf.runtime.messages.step_times import NS
 from uvf.runtime.time.lockstep import Lockstep
@@ -43,14 +43,14 @@ STICK = 0.5  # of a stick's way
 AWAY, LEG = 75.0, 30.0  # s of cruise: to where the first leg begins, along each of the legs
 TURNS = 2.0
 STEEPER = 1.3  # than the glide of cruise, along the course of a glider
-LONGEST = 900.0  # s
-STICKS_HZ = 20.0
+LAPS, LANDS = 6.0, 200.0  # of the circle and s, at most from the mission's own circle to the end
+NEEDED = ("imu", "gnss")
 
 
 class ProofAir(NamedTuple):
-    """What a proof is flown in: turbulence of this severity, "" for none, and whether one lands in it."""
+    """What a proof is flown in, and whether one lands in it."""
 
-    severity: str
+    turbulence: TurbulenceFile | None
     lands: bool
 
 
@@ -86,6 +86,11 @@ class ProofCourse:
         return math.tau * self.radius / self.airspeed
 
     @property
+    def longest(self) -> float:
+        """Time [s] after which it ought to be over."""
+        return Steps.planned(bool(self.glide)).end + 1.5 * (AWAY + 2 * LEG) + (TURNS + LAPS) * self.lap + LANDS
+
+    @property
     def start(self) -> float:
         """Height [m] of the start."""
         return HEIGHT + math.tan(self.glide) * ((AWAY + 2 * LEG) * self.airspeed + (TURNS * math.tau + 2.0) * self.radius)
@@ -114,6 +119,11 @@ class Steps(NamedTuple):
     hold: float
     end: float
 
+    @classmethod
+    def planned(cls, glides: bool) -> "Steps":
+        """Without a climb for what glides."""
+        return cls(*np.cumsum([STEPS_AT, LEVELS, HELD, HELD, LEVELS, 0.0 if glides else CLIMBED, LEVELS]).tolist())
+
     def sticks(self, t: float) -> tuple[float, float]:
         """Shares of bank and climb that are asked for at ``t`` [s], -1 to 1."""
         bank = 1.0 if self.right <= t < self.left else -1.0 if self.left <= t < self.level else 0.0
@@ -141,31 +151,37 @@ class ProofFlight:
     events: list[str]
     """Of the autopilot, a line each."""
 
+    @property
+    def last_words(self) -> str:
+        """The last event, or that there was none."""
+        return self.events[-1] if self.events else "nothing"
+
 
 def proof_flight(folder: Path, air: ProofAir) -> ProofFlight:
     """One flight of the vehicle in this folder. Raises BadInput."""
     file = load_vehicle(folder.parent, folder.name)
     assert file.air is not None
-    site, course = _site(folder, file, air)
-    params = site.members[NAME].params(SERVICE, AirParams)
-    hosts = catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")])
-    with closing(Lockstep(hosts)) as lockstep:
-        pilot = _Pilot(lockstep, file.air, params)
-        lockstep.run(LONGEST, pilot)
-    return pilot.flight(course)
-
-
-def _site(folder: Path, file: VehicleFile, air: ProofAir) -> tuple[Scenario, ProofCourse]:
-    """A mission over flat ground."""
+    if missing := [name for name in NEEDED if getattr(file.sensors, name) is None]:
+        place = f"{folder / 'vehicle.yaml'}: sensors"
+        raise BadInput(f"{place}: no {' and no '.join(missing)}, without which the autopilot flies nothing; add it")
     params = convert(file.params.get(SERVICE, {}), AirParams, str(folder / "vehicle.yaml"), ("params", SERVICE))
     glide = 0.0 if params.throttle_climb else STEEPER * params.idle_sink / params.trim_airspeed
     course = ProofCourse(params.trim_airspeed, params.hold_radius, glide, air)
-    entry = Vehicle(folder.name, StartPose(0.0, 0.0, course.start, math.pi / 2, params.trim_airspeed), 1, course.job())
-    turbulence = TurbulenceFile(air.severity) if air.severity else None  # type: ignore[arg-type]
-    world = msgspec.structs.replace(load_world(WORLDS, WORLD), wind=Wind(turbulence=turbulence))
+    site = _site(folder, file, course)
+    hosts = catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")])
+    with closing(Lockstep(hosts)) as lockstep:
+        pilot = _Pilot(lockstep, file.air, params)
+        lockstep.run(course.longest, pilot)
+    return pilot.flight(course)
+
+
+def _site(folder: Path, file: VehicleFile, course: ProofCourse) -> Scenario:
+    """A mission over flat ground."""
+    entry = Vehicle(folder.name, StartPose(0.0, 0.0, course.start, math.pi / 2, course.airspeed), 1, course.job())
+    world = msgspec.structs.replace(load_world(WORLDS, WORLD), wind=Wind(turbulence=course.air.turbulence))
     member = MissionVehicle(NAME, entry, file, folder)
     mission = MissionFile("proof of a tuning", WORLD, {NAME: entry})
-    return Scenario(folder / "proof.yaml", mission, world, WORLDS, {NAME: member}), course
+    return Scenario(folder / "proof.yaml", mission, world, WORLDS / WORLD, {NAME: member})
 
 
 class _Pilot:
@@ -176,23 +192,22 @@ class _Pilot:
         self._throttle = (params.trim_airspeed - params.min_airspeed) / (params.max_airspeed - params.min_airspeed)
         topic = topics.SURFACES.by(WRITER)
         self._sticks = self._bus.publisher(topic.at(NAME), SurfaceCommand.DESCRIPTOR.full_name, topic.qos)
-        climbs = CLIMBED if params.throttle_climb else 0.0
-        self._steps = Steps(*np.cumsum([STEPS_AT, LEVELS, HELD, HELD, LEVELS, climbs, LEVELS]).tolist())
+        self._steps = Steps.planned(not params.throttle_climb)
         self._flies = ""
         self._truth = self._kept(topics.TRUTH)
         self._surfaces = self._kept(topics.SURFACE_COMMAND)
         self._status = self._kept(topics.STATUS)
         self._progress = self._kept(topics.PROGRESS)
-        self._events = [*map(self._kept, (topics.EVENTS.by("sim_air"), topics.EVENTS.by("autopilot")))]
+        self._ends, self._events = self._kept(topics.EVENTS.by("sim_air")), self._kept(topics.EVENTS.by("autopilot"))
 
     def __call__(self, t: float) -> bool:
         """Whether to go on."""
         self._fly("sticks" if STEPS_AT <= t < self._steps.end else "mission", t)
-        if self._flies == "sticks" and round(t * topics.CLOCK.hz) % round(topics.CLOCK.hz / STICKS_HZ) == 0:
+        if self._flies == "sticks" and round(t * topics.CLOCK.hz) % round(topics.CLOCK.hz / topics.SURFACES.hz) == 0:
             bank, climb = self._steps.sticks(t)
             controls = self._body.controls
-            asked = controls.aileron.deflection(STICK * bank), controls.elevator.deflection(-STICK * climb), 0.0, self._throttle
-            message = SurfaceCommand(timestamp=stamp(t), **dict(zip(("aileron", "elevator", "rudder", "throttle"), asked, strict=True)))
+            aileron, elevator = controls.aileron.deflection(STICK * bank), controls.elevator.deflection(-STICK * climb)
+            message = SurfaceCommand(timestamp=stamp(t), aileron=aileron, elevator=elevator, throttle=self._throttle)
             self._sticks.put(message.SerializeToString(), round(t * NS))
         return not (self._crash or self._complete)
 
@@ -209,7 +224,7 @@ class _Pilot:
 
     @property
     def _crash(self) -> str:
-        return next((m.cause for _, m in self._events[0] if m.text == CRASHED), "")
+        return next((m.cause for _, m in self._ends if m.text == CRASHED), "")
 
     def _kept(self, topic: Topic[M]) -> list[tuple[float, M]]:
         kept: list[tuple[float, M]] = []
@@ -233,16 +248,16 @@ class _Pilot:
             np.array([m.cross_track for _, m in self._status]),
             self._crash,
             self._complete,
-            [f"{t:.1f} s: {m.text}, {m.cause}" if m.cause else f"{t:.1f} s: {m.text}" for t, m in self._events[1]],
+            [f"{t:.1f} s: {m.text}, {m.cause}" if m.cause else f"{t:.1f} s: {m.text}" for t, m in self._events],
         )
 
 
 def followed(asked: Floats, t: Floats, body: AirBody) -> Floats:
-    """Where servos are that follow (m, 3) deflections [rad] asked for at times ``t`` (m,) [s] with their lags."""
+    """Where servos are that follow (m, 3) deflections [rad] asked for at times ``t`` (m,) [s] with their lags; their rates are left out."""
     found = asked.copy()
-    for column, name in enumerate(("aileron", "elevator", "rudder")):
-        lag = body.servo_lag if (own := getattr(body.controls, name).lag) is None else own
-        servo = LowPass(lag) if lag else None
-        if servo is not None:
+    controls = body.controls
+    for column, surface in enumerate((controls.aileron, controls.elevator, controls.rudder)):
+        if lag := body.lag_of(surface):
+            servo = LowPass(lag)
             found[:, column] = [servo.step(float(x), float(dt)) for x, dt in zip(asked[:, column], np.diff(t, prepend=t[0]), strict=True)]
     return found

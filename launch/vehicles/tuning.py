@@ -97,6 +97,7 @@ def tune(folder: Path, firmness: float = 1.0) -> Tuning:
     assert file.air is not None
     before = convert(file.params.get(SERVICE, {}), AirParams, str(folder / "vehicle.yaml"), ("params", SERVICE))
     measured = autopilot_figures(airframe, file.air)
+    measured["turn_bank"] = min(measured["turn_bank"], before.bank_limit)
     params = msgspec.structs.replace(before, **measured)
     aircraft = modelled(airframe, file.air, params)
     params = rounded(designed(aircraft.loops, begun(aircraft.loops, aircraft.with_mix(params)), firmness))

@@ -52,5 +52,4 @@ def _servo(control: Surface | Lever, name: str, start: float, body: AirBody) -> 
     if isinstance(control, Lever):
         return Servo(start, (0.0, 1.0), math.inf, control.lag)
     low = 0.0 if name == "flap" else control.lowest()
-    lag = body.servo_lag if control.lag is None else control.lag
-    return Servo(start, (low, control.limit), control.rate or body.servo_rate or math.inf, lag)
+    return Servo(start, (low, control.limit), control.rate or body.servo_rate or math.inf, body.lag_of(control))

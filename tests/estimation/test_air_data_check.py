@@ -70,6 +70,30 @@ def in_gusts(size, seconds, then):
     return gaps[: round(seconds / DT)], gaps[-1]
 
 
+def test_a_wind_that_has_changed_while_there_was_no_fix_is_no_jump():
+    check, said_gap = AirDataCheck(), []
+    for t in range(round(60.0 / DT)):
+        fixed = not 10.0 < t * DT < 40.0
+        read = 25.0 if t * DT < 10.0 else 20.0
+        said = Pressures(STATIC + 0.1 * (t % 7), 0.5 * RHO0 * read**2 + 1e-6 * t, 288.15)
+        now = flying_at(read, ground_speed=25.0, wind_north=25.0 - read)
+        check.step((t, said), FlightState(now, 0.0 if fixed else 5.0, True), PARAMS, DT)
+        said_gap.append(check.gap)
+    assert not any(said_gap)
+
+
+def test_a_tube_that_is_clear_again_is_believed_and_its_jump_back_is_no_fault():
+    check, gaps = AirDataCheck(), []
+    for t in range(round(40.0 / DT)):
+        read = 17.7 if 10.0 < t * DT < 20.0 else 25.0
+        said = Pressures(STATIC + 0.1 * (t % 7), 0.5 * RHO0 * read**2 + 1e-6 * t, 288.15)
+        check.step((t, said), FlightState(flying_at(25.0, ground_speed=25.0), 0.0, True), PARAMS, DT)
+        gaps.append(check.gap)
+    told = np.array(gaps)
+    assert told.min() < -6.0 and told.max() <= 0.0
+    assert not told[round(27.0 / DT) :].any()
+
+
 @pytest.mark.parametrize("size", [0.5, 2.0, 3.0])
 @pytest.mark.parametrize(("then", "gap"), [(0.0, -15.0), (17.7, -5.0)])
 def test_gusts_are_no_fault_and_a_dead_tube_or_half_the_pressure_is_found_in_them(size, then, gap):

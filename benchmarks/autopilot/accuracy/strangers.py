@@ -135,7 +135,7 @@ def _spoil(folder: Path, model: str, seed: int) -> None:
     _with_air(folder, lambda air: air.update(servo_lag=air["servo_lag"] * (1 + LAG_OFF * (-1) ** seed)))
 
 
-def seeds_of(wind: str) -> list[Case]:
+def cases_of(wind: str) -> list[Case]:
     """The cases of a wind, by its name."""
     return [replace(ONE[wind][0], seed=seed) for seed in SEEDS]
 
@@ -149,7 +149,7 @@ def table(name: str, data: Path | None = None) -> Figures:
     """All winds, three seeds each."""
     stranger = STRANGERS[name]
     figures_of(made, (stranger,))
-    cases = {wind: seeds_of(wind) for wind in ONE}
+    cases = {wind: cases_of(wind) for wind in ONE}
     found = several(flown, [(stranger, case) for rows in cases.values() for case in rows])
     return {f"{name}, {wind}": _row([next(found) for _ in rows]) for wind, rows in cases.items()}
 
@@ -160,7 +160,7 @@ def corners(name: str, data: Path | None = None) -> Figures:
     for one in spoiled:
         root_of(one)  # one after the other: all of them are made from the same
     winds = ("calm", "moderate")
-    found = several(flown, [(one, seeds_of(wind)[0]) for wind in winds for one in spoiled])
+    found = several(flown, [(one, cases_of(wind)[0]) for wind in winds for one in spoiled])
     return {f"{name}, {wind}, off": _row([next(found) for _ in spoiled]) for wind in winds}
 
 
@@ -182,7 +182,7 @@ def _said(name: str, wanted: list[str]) -> Iterator[str]:
     stranger = STRANGERS[name]
     yield str(made(stranger))
     for wind in wanted or list(ONE):
-        rows = list(several(flown, [(stranger, case) for case in seeds_of(wind)]))
+        rows = list(several(flown, [(stranger, case) for case in cases_of(wind)]))
         yield f"{wind:22} {'  '.join(f'{metric} {value:.2f}' for metric, value in _row(rows).items())}"
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from uvf.estimation.sensor_inputs import Pressures
 from uvf.estimation.state import Estimate
 from uvf.maths import atmosphere
-from uvf.maths.filters import LowPass
+from uvf.maths.filters import LowPass, RunningMean
 from uvf.models.vehicle.flight_params import AirParams
 
 FROZEN = 50  # readings that are the same to the last bit: real ones have noise
@@ -53,19 +53,6 @@ class FlightState:
     now: Estimate
     gnss_age: float  # s
     airborne: bool
-
-
-class GustPower:
-    """Mean square of gusts, of all that has been flown and after ``time`` [s] of about as long ago as that."""
-
-    def __init__(self, time: float) -> None:
-        self.mean = MOST_GUST**2  # m^2/s^2
-        self._time, self._known = time, ROUGH_TIME
-
-    def step(self, gust: float, dt: float) -> None:
-        """Takes a gust [m/s] that was met for ``dt`` [s]."""
-        self._known = min(self._known + dt, self._time)
-        self.mean += dt / self._known * (min(gust, MOST_GUST) ** 2 - self.mean)
 
 
 class JumpWatch:
@@ -114,7 +101,7 @@ class AirDataCheck:
         self._frozen = (False, False)
         self._smoothed = LowPass(SMOOTHED)
         self._by_lift = LowPass(LIFT_TIME)
-        self._power = [GustPower(time) for time in GUST_TIMES]
+        self._power = [RunningMean(time, MOST_GUST**2, ROUGH_TIME) for time in GUST_TIMES]  # m^2/s^2
         self._jumps = JumpWatch()
         self._wind: tuple[float, float] | None = None
         self._wind_height = 0.0  # m
@@ -140,13 +127,15 @@ class AirDataCheck:
         return self._checked(pressures, flying, params, dt)
 
     def _forget(self) -> None:
-        self.gap, self._agreed, self._watched, self._wind = 0.0, 0.0, False, None
+        self.gap, self._limit, self._agreed, self._watched, self._wind = 0.0, 0.0, 0.0, False, None
+        self._jumps = JumpWatch()
 
     def _checked(self, pressures: Pressures, flying: FlightState, params: AirParams, dt: float) -> Pressures:
         now = flying.now
         density = atmosphere.density(pressures.static, pressures.temperature)
         if flying.gnss_age > UNFIXED:
             expected = params.trim_airspeed
+            self._jumps = JumpWatch()  # what was before the gap is no beginning of a jump
         else:
             expected = self._expected(now, dt)
             measured = atmosphere.airspeed(pressures.differential, density)
@@ -155,7 +144,8 @@ class AirDataCheck:
                 self._by_lift.step(measured - lifted, dt)
             jump = self._jumps.step(measured, measured - expected, now.lift, JUMP * params.trim_airspeed, dt)
             if not self.gap:
-                self._limit = JUMP_LEFT * abs(jump) or self._gusts(gap, expected, params, dt) + self._shear(now.height)
+                self._limit = self._gusts(gap, expected, params, dt) + self._shear(now.height)
+                self._limit = JUMP_LEFT * abs(jump) if jump else self._limit
             self._judge(gap, jump, params, dt)
         return replace(pressures, differential=0.5 * density * expected**2) if self.gap else pressures
 
@@ -178,9 +168,9 @@ class AirDataCheck:
         They are known from the mean of their squares, of the last minute or of the last seconds: whichever air was rougher.
         """
         for power in self._power:
-            power.step(abs(gap), dt)
+            power.step(min(abs(gap), MOST_GUST) ** 2, dt)
         least = params.airspeed_gap * params.trim_airspeed
-        return max(least, min(GUSTS * math.sqrt(max(power.mean for power in self._power)), NEVER_A_GUST * expected))
+        return max(least, min(GUSTS * math.sqrt(max(power.value for power in self._power)), NEVER_A_GUST * expected))
 
     def _shear(self, height: float) -> float:
         """m/s, that the wind may be other at this height [m] than at the one where it was met."""
@@ -190,12 +180,13 @@ class AirDataCheck:
     def _judge(self, gap: float, jump: float, params: AirParams, dt: float) -> None:
         """Believed until off by more than the limit, and by the lift too, jumps or stands still; again after 5 s within half of it."""
         against = abs(self._by_lift.value or 0.0) > LIFT_SHARE * params.trim_airspeed
-        agrees = abs(gap) < 0.5 * self._limit and not self._frozen[1] and not jump
+        jumped = bool(jump) and not self.gap  # once it is not believed, a jump is that back
+        agrees = abs(gap) < 0.5 * self._limit and not self._frozen[1] and not jumped
         self._agreed = self._agreed + dt if agrees else 0.0
         if self._agreed > AGREES:
             self._watched, self.gap = True, 0.0
-        elif self._watched and (jump or (abs(gap) > self._limit and (against or self.gap)) or self._frozen[1]):
-            self.gap = jump or gap or math.ulp(1.0)
+        elif self._watched and (jumped or (abs(gap) > self._limit and (against or self.gap)) or self._frozen[1]):
+            self.gap = gap or math.ulp(1.0)
 
 
 def lift_airspeed(now: Estimate, params: AirParams) -> float | None:

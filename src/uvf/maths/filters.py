@@ -18,6 +18,21 @@ class LowPass:
         return self.value
 
 
+class RunningMean:
+    """Mean of all samples so far, and once ``time`` [s] is over of about as long ago as that."""
+
+    def __init__(self, time: float, value: float, known: float) -> None:
+        self.value = value
+        """In the unit of the samples; at first what is taken for granted, as if seen for ``known`` [s]."""
+        self._time, self._known = time, known
+
+    def step(self, sample: float, dt: float) -> float:
+        """The mean with a sample that lasted ``dt`` [s]."""
+        self._known = min(self._known + dt, self._time)
+        self.value += dt / self._known * (sample - self.value)
+        return self.value
+
+
 class Integral:
     """Integral that is kept within +-limit, in the unit of the rate times seconds."""
 

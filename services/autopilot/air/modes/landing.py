@@ -21,14 +21,14 @@ from uvf.guidance.route import Circle, Place
 from uvf.guidance.runways import Runway
 from uvf.guidance.vector_field import line_reference
 from uvf.maths.atmosphere import power
-from uvf.maths.filters import LowPass
+from uvf.maths.filters import RunningMean
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
 FINAL_TIME = 25.0  # s at the lowest airspeed: the length of the final approach
 ON_CIRCLE = 5.0  # m of height, with which it may be left
 MOST_TAILWIND = 1.5  # m/s, with which it lands
-WIND_TIME = 60.0  # s, of the mean wind by which the lane is chosen: turbulence would turn it this way and that
+WIND_TIME, WIND_KNOWN = 60.0, 10.0  # s, of the mean wind by which the lane is chosen, and that the first estimate counts for
 GROUND_WIND, SHEAR = 10.0, 1 / 7  # m, at which a wind at the ground is given; exponent
 EASED = 0.9  # of crosswind_max, from which on it lands that has waited for less
 ALIGNED = 0.3  # rad, of the course on leaving the circle
@@ -91,7 +91,7 @@ class LandingMode(FlightPhase):
         self._since = 0.0
         self._gyros, self._touched_at = Gyros(now), 0.0
         slow = now.airspeed < 0.6 * params.min_airspeed  # started anew while it rolls out
-        self._wind = LowPass(WIND_TIME), LowPass(WIND_TIME)
+        self._wind = [RunningMean(WIND_TIME, wind, WIND_KNOWN) for wind in (now.wind_north, now.wind_east)]
         self._stage = LandingStage.ROLL if slow else LandingStage.CIRCLE
         self._circle = self._new_circle(now, params)
         self._still = 0.0
@@ -121,8 +121,9 @@ class LandingMode(FlightPhase):
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         """Setpoint of this cycle of ``dt`` [s], from the circle over the approach and the flare to the end of the roll."""
         self._since += dt
+        mean = self._in_mean_wind(now, dt)
         if self._stage is LandingStage.CIRCLE:
-            return self._descend(now, self._in_mean_wind(now, dt), params)
+            return self._descend(now, mean, params)
         if self._stage is LandingStage.FINAL:
             return self._final(now, params, dt)
         return self._roll(now, params, dt) if self._stage is LandingStage.ROLL else self._go_around(now, params)
@@ -151,6 +152,7 @@ class LandingMode(FlightPhase):
         return (height, slope, flares) if height < top else (top, 0.0, False)
 
     def _in_mean_wind(self, now: Estimate, dt: float) -> Estimate:
+        """For the choice of the lane: turbulence would turn it this way and that."""
         north, east = self._wind
         return replace(now, wind_north=north.step(now.wind_north, dt), wind_east=east.step(now.wind_east, dt))
 

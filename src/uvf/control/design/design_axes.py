@@ -21,7 +21,7 @@ from uvf.models.vehicle.flight_params import AirParams
 
 OMEGA: Floats = np.geomspace(0.02, 150.0, 110)  # rad/s
 TURBULENCE, HEIGHT = "moderate", 100.0  # m
-BANK_OFF, BANK_LASTS, PITCH_OFF = (0.05, 1.0), (0.025, 20.0), (0.01, 5.0)
+BANK_OFF, SLOW_BANK_OFF, PITCH_OFF = (0.05, 1.0), (0.025, 20.0), (0.01, 5.0)
 """rad and s: disturbances that come on bank and pitch, and how long they last. A bank that is off as long as a turn is what a circle meets:
 its feed-forward is not that of this aircraft."""
 LATERAL = {
@@ -58,7 +58,7 @@ STIFF = {"roll_p": 0.15, "roll_i": 0.3, "pitch_p": 0.3, "pitch_i": 1.0}
 STEEP = 0.3  # 1/s, with which a path is approached at least
 SLOWEST, SLOWER = 0.5, 4.0  # s, and of the delays: the longest time constant of an attitude
 ASIDE, ABOVE, FASTER = 0.5, 0.5, 0.7  # m, m, m/s: errors in turbulence, each worth as much as the surfaces' whole budget
-AT_SPEED = 20.0  # m/s, up to which they are: those of a faster aircraft grow with its speed
+DESIGN_SPEED = 20.0  # m/s, up to which lengths are those; they grow with a higher one
 FINAL_SHARE, FINAL_WAY = 0.3, 3.0  # of ABOVE, of PITCH_WAY: budgets near the ground
 LEVEL = 0.05  # rad of bank in turbulence, worth a whole budget there
 FLARES = 1.5  # times altitude_p, to begin with
@@ -121,17 +121,17 @@ def _cruise(aircraft: AircraftLoops, params: AirParams) -> FlightCondition:
     return min(aircraft.conditions, key=lambda flight: abs(flight.airspeed - params.trim_airspeed))
 
 
-def _firmness(params: AirParams, firmness: float) -> float:
-    """What errors count, in shares of their budgets for 20 m/s."""
-    return firmness / max(1.0, params.trim_airspeed / AT_SPEED)
+def longer(airspeed: float) -> float:
+    """How much longer errors may be that are lengths, at a cruise speed [m/s]."""
+    return max(1.0, airspeed / DESIGN_SPEED)
 
 
 def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
-    air, firmness = _air(aircraft, params), _firmness(params, firmness)
+    air, aside = _air(aircraft, params), ASIDE * longer(params.trim_airspeed)
 
     def wanted(flow: SignalFlow) -> float:
         error, way = _aside(air, flow)
-        return _within(firmness * error / ASIDE, way / ROLL_WAY)
+        return _within(firmness * error / aside, way / ROLL_WAY)
 
     gains = LATERAL | _inner("roll", aircraft.delays.total("aileron"), params.roll_ff, LATERAL)
     gains["k_path"] = STEEP / (params.trim_airspeed * params.chi_inf * 2 / np.pi), LATERAL["k_path"][1]
@@ -141,19 +141,19 @@ def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
 
 
 def _longitudinal(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
-    air, firmness = _air(aircraft, params), _firmness(params, firmness)
+    air, above = _air(aircraft, params), ABOVE * longer(params.trim_airspeed)
 
     def wanted(flow: SignalFlow) -> float:
         error, way = _above(air, flow)
         throttle = np.sqrt(2 / np.pi) * air.rms(flow, "servo_t", "uwq", rate=True)
-        return _within(firmness * error / ABOVE, air.rms(flow, "airspeed", "uwq") / FASTER, way / PITCH_WAY, throttle / THROTTLE_WAY)
+        return _within(firmness * error / above, air.rms(flow, "airspeed", "uwq") / FASTER, way / PITCH_WAY, throttle / THROTTLE_WAY)
 
     gains = LONGITUDINAL | _inner("pitch", aircraft.delays.total("elevator"), params.pitch_ff, LONGITUDINAL)
     return Axis(gains, longitudinal_loops.LOOPS, partial(longitudinal_loops.longitudinal_flow, OMEGA), wanted, LONGITUDINAL_STARTS)
 
 
 def _gliding(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
-    air, firmness = _air(aircraft, params), _firmness(params, firmness)
+    air = _air(aircraft, params)
 
     def wanted(flow: SignalFlow) -> float:
         error = np.hypot(air.rms(flow, "airspeed", "uwq"), disturbed(flow, "airspeed", "pitch", *PITCH_OFF))
@@ -166,7 +166,7 @@ def _gliding(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
 
 def _aside(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
     """Error beside the path [m] in gusts and after disturbances of bank, and the way of ailerons and rudder [deg/s]."""
-    off = [disturbed(flow, "aside", "bank", *by) for by in (BANK_OFF, BANK_LASTS)]
+    off = [disturbed(flow, "aside", "bank", *by) for by in (BANK_OFF, SLOW_BANK_OFF)]
     error = math.hypot(air.rms(flow, "aside", "vpr"), *off)
     return error, WAY * sum(air.rms(flow, surface, "vpr", rate=True) for surface in ("servo_a", "servo_r"))
 
@@ -179,17 +179,17 @@ def _above(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
 
 def final_axes(aircraft: AircraftLoops, params: AirParams, firmness: float) -> list[Axis]:
     """Near the ground, where comfort does not count: as stiff as the margins allow; pitch of a glider is as in cruise."""
-    air = _air(aircraft, params)
+    air, share = _air(aircraft, params), FINAL_SHARE * longer(params.trim_airspeed)
     roll, pitch = axes(aircraft, params)
 
     def beside(flow: SignalFlow) -> float:
         error, way = _aside(air, flow)
         level = air.rms(flow, "phi", "vpr") / LEVEL
-        return _within(firmness * error / (FINAL_SHARE * ASIDE), firmness * level, way / (FINAL_WAY * ROLL_WAY))
+        return _within(firmness * error / (share * ASIDE), firmness * level, way / (FINAL_WAY * ROLL_WAY))
 
     def above(flow: SignalFlow) -> float:
         error, way = _above(air, flow)
-        return _within(firmness * error / (FINAL_SHARE * ABOVE), way / (FINAL_WAY * PITCH_WAY))
+        return _within(firmness * error / (share * ABOVE), way / (FINAL_WAY * PITCH_WAY))
 
     lateral = {f"final_{name}": roll.gains[name] for name in FINAL_LATERAL}
     longitudinal = {f"final_{name}": pitch.gains[name] for name in FINAL_LONGITUDINAL} | FLARE

@@ -145,6 +145,10 @@ class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     battery: Annotated[BatteryPack | None, plain("Battery of an electric aircraft.")] = None
     looks: Annotated[Looks, plain("How the aircraft is drawn; left out: derived from the JSBSim model.")] = Looks()
 
+    def lag_of(self, surface: Surface) -> float:
+        """Time constant [s] of the servo of a surface."""
+        return self.servo_lag if surface.lag is None else surface.lag
+
 
 def unnumbered(name: str) -> str:
     """Name of a property without the number at its end."""

@@ -107,20 +107,22 @@ def test_more_crosswind_than_it_may_land_in_keeps_it_on_the_circle():
     assert landing.circle is None and landing.told == "it lands: 5.3 m/s of crosswind"
 
 
-def wind_that(swings, mean, seconds=120.0):
-    """Circles that were flown, while the wind swings along the lane by so much [m/s] about its mean, once in half a minute."""
+def lanes_in(wind, seconds=120.0):
+    """Times [s] at which the landing has turned to another circle, in a wind [m/s, to the east] by the time [s]."""
     landing = LandingMode(cruising(), lambda now: lane_for(Place(0.0, 0.0, 0.0), [STRIP], now), FlightContext(), PARAMS)
-    circles = [landing.circle]
+    circles = [(0.0, landing.circle)]
     for t in np.arange(0.0, seconds, 0.1):
-        wind = mean + swings * math.sin(math.tau * t / 30.0)
-        landing.step(cruising(east=200.0, wind_east=wind), PARAMS, 0.1)
-        circles.append(landing.circle)
-    return [circle for before, circle in pairwise([None, *circles]) if circle != before]
+        landing.step(cruising(east=200.0, wind_east=wind(t)), PARAMS, 0.1)
+        circles.append((t, landing.circle))
+    return [t for (_, before), (t, circle) in pairwise(circles) if circle != before]
 
 
 def test_turbulence_does_not_turn_the_lane_and_a_wind_that_is_found_out_does():
-    assert len(wind_that(swings=3.0, mean=0.0)) == 1
-    assert len(wind_that(swings=1.0, mean=5.0)) == 2
+    assert lanes_in(lambda t: 3.0 * math.sin(math.tau * t / 30.0)) == []
+    (found_out,) = lanes_in(lambda t: 5.0 * (t > 1.0))
+    assert 2.0 < found_out < 8.0
+    (later,) = lanes_in(lambda t: 5.0 * (t > 60.0))
+    assert 65.0 < later < 85.0
 
 
 def test_a_wind_along_the_lane_and_a_failsafe_do_not_wait():
