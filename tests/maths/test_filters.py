@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from uvf.maths.filters import Integral, LowPass
+from uvf.maths.filters import Integral, LowPass, RunningMean
 
 
 def test_low_pass_starts_at_its_first_sample():
@@ -33,3 +33,16 @@ def test_integral_stops_at_its_limit_and_leaves_it_at_once():
         integral.step(1.0, 0.1)
     assert integral.value == 0.3
     assert integral.step(-1.0, 0.1) == pytest.approx(0.2)
+
+
+def test_a_running_mean_is_that_of_all_so_far_and_then_of_the_last_of_it():
+    mean = RunningMean(10.0, 0.0, 1.0)
+    for _ in range(100):
+        mean.step(2.0, 0.01)
+    assert mean.value == pytest.approx(1.0, abs=0.01)  # one second taken for granted, one seen
+    for _ in range(10_000):
+        mean.step(2.0, 0.01)
+    before = mean.value
+    mean.step(12.0, 0.01)
+    assert before == pytest.approx(2.0, abs=1e-3)
+    assert mean.value - before == pytest.approx(0.01, rel=0.01)
