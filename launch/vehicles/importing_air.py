@@ -15,13 +15,14 @@ from launch.vehicles.aircraft_trial import tried
 from launch.vehicles.autopilot_guess import autopilot_figures, three_digits
 from launch.vehicles.tuning import rounded
 from services.sim_air.engine.airframe import Airframe
+from services.sim_air.engine.spin_up import FUEL_FREEZE
 from uvf.control.design.design_axes import FINAL, LATERAL, LONGITUDINAL
 from uvf.control.design.gain_start import begun
 from uvf.maths.atmosphere import RHO0
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.importing.jsbsim import copy_model, has_actuators
 from uvf.models.importing.notes import Notes
-from uvf.models.jsbsim.model_file import steers_by_brakes, weight_and_wing
+from uvf.models.jsbsim.model_file import burns_fuel, steers_by_brakes, weight_and_wing
 from uvf.models.vehicle.air import AirBody, CommandProperties, Lever
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.yaml_data import BadInput
@@ -36,6 +37,7 @@ LAND_FLAP = 0.3  # of their travel
 LIGHT = 50.0  # kg, below which an aircraft has servos of models
 MOTOR_LAG = 0.1  # s
 SERVOS = {True: (6.0, 0.05), False: (1.0, 0.05)}  # rad/s, s
+UNBURNT = {FUEL_FREEZE: 1.0}  # models come with fuel for minutes, or for a day
 SENSORS = {
     "imu": {
         **{"mount": {}, "hz": 100.0, "gyro_noise": 0.0023, "gyro_bias": 0.002},
@@ -75,7 +77,10 @@ def _described(vehicle: str, model: str) -> tuple[dict[str, Any], list[str]]:
     rate, lag = (None, 0.0) if own else SERVOS[mass < LIGHT]
     speed = float(f"{math.sqrt(2 * mass * GRAVITY / (RHO0 * wing * LIFT)):.2g}")
     controls = CommandProperties(throttle=Lever(lag=0.0 if own else MOTOR_LAG))
-    first = AirBody(model=model, physics_hz=120.0, trim_speed=speed, servo_rate=rate, servo_lag=lag, controls=controls)
+    fuel = UNBURNT if burns_fuel(folder / model / f"{model}.xml") else {}
+    first = AirBody(model=model, physics_hz=120.0, trim_speed=speed, servo_rate=rate, servo_lag=lag, controls=controls, settings=fuel)
+    if fuel:
+        notes.add("guessed: its fuel does not burn away, its mass stays as it is tuned; take this setting out to fly by the tanks", *fuel)
     body = tried(folder, first, notes)
     guessed = f"guessed: servos of {rate} rad/s with a lag of {lag:g} s, a motor of {MOTOR_LAG:g} s"
     servos = "found: servos in the model" if own else guessed

@@ -17,7 +17,7 @@ from services.sim_air.engine.engine_state import CYCLES, HELD, EngineState
 from services.sim_air.engine.gauges import FT, Gauges
 from services.sim_air.engine.gust_rates import GUST_RATES, with_gust_rates
 from services.sim_air.engine.initial import at_rest, blow, lay_terrain, put, put_held
-from services.sim_air.engine.spin_up import Hold, SpinUp
+from services.sim_air.engine.spin_up import FUEL_FREEZE, Hold, SpinUp
 from services.sim_air.engine.states import Air, AircraftMotion, Held, InitialState, Runaway
 from services.sim_air.engine.trim import FlightPath, Trim, TrimAttitude, attitude, solve
 from services.sim_air.engine.wiring import Controls, JointAngle, Wiring
@@ -63,7 +63,7 @@ class Airframe:
         self._contacts = Contacts(self._fdm, known, self._path, self._body.skids, place.at("skids"))
         self._reach = float(np.linalg.norm(self._contacts.points(), axis=1).max(initial=0.0))
         self._gauges = Gauges(self._fdm, known, self._tangent)
-        self._hold = Hold(self._fdm)
+        self._hold = Hold(self._fdm, not self._body.settings.get(FUEL_FREEZE))
         self._controls = Controls()
         self._stands: tuple[InitialState, TrimAttitude] | None = None  # how it was put on its wheels, until its first step
 

@@ -9,6 +9,7 @@ FIRST = 3.0  # s, after which most propellers turn steadily
 LONGEST = 24.0  # s
 CHECK = 0.5  # s, over which the thrust of a steady one does not change
 STEADY = 1e-6  # of the thrust
+FUEL_FREEZE = "propulsion/fuel_freeze"
 INTEGRATORS = tuple(
     f"simulation/integrator/{kind}" for kind in ("rate/rotational", "rate/translational", "position/rotational", "position/translational")
 )
@@ -20,15 +21,16 @@ class Hold:
     The model's own actuators follow at once meanwhile, as while JSBSim trims: with their hysteresis the result would depend on the way.
     """
 
-    def __init__(self, fdm: Engine) -> None:
-        self._fdm = fdm
+    def __init__(self, fdm: Engine, burns: bool) -> None:
+        """burns: whether it burns its fuel once it is released."""
+        self._fdm, self._burns = fdm, burns
         self._integrators = {name: fdm[name] for name in INTEGRATORS}
 
     def still(self, still: bool) -> None:
         """Holds or releases the body."""
         for name, method in self._integrators.items():
             self._fdm[name] = 0 if still else method
-        self._fdm["propulsion/fuel_freeze"] = int(still)
+        self._fdm[FUEL_FREEZE] = int(still or not self._burns)
         self._fdm.set_trim_status(still)
 
 

@@ -101,6 +101,7 @@ def test_what_the_model_tells_is_not_guessed(tmp_path):
     assert any(
         re.match(r"found: it stands \d\.\d\d m high on wheels, one of them under its tail, its nose \d+ degrees up", n) for n in notes
     )
+    assert file.air.settings == {"propulsion/fuel_freeze": 1.0} and any("its fuel does not burn away" in note for note in notes)
     assert file.params["autopilot_air"]["gear"] == "tail_wheel" and 0.1 < file.params["autopilot_air"]["rest_pitch"] < 0.3
 
 

@@ -29,6 +29,11 @@ def check_model(path: Path) -> None:
         raise BadInput(fault)
 
 
+def burns_fuel(path: Path) -> bool:
+    """Whether a model has tanks of fuel that its engines empty. Raises BadInput for no XML."""
+    return any(tank.get("type", "").upper() == "FUEL" for tank in read(path).iter("tank"))
+
+
 def model_faults(path: Path) -> Iterator[str]:
     """Faults of a model: missing sections, sizes, mass and inertia that no body has, missing engines. Raises BadInput for no XML."""
     model = read(path)
