@@ -125,7 +125,6 @@ def tune(
 
     from launch.vehicles import tuning
     from launch.vehicles.inspection import folder_of
-    from launch.vehicles.proof import prove
 
     with bad_input_is_one_line():
         found = tuning.tune(folder_of(name, _vehicles()), firmness)
@@ -140,6 +139,8 @@ def tune(
     if written is None:
         typer.echo(f"uvf: 'uvf vehicle tune {name} --write' puts them into its vehicle.yaml and flies it")
         return
+    from launch.vehicles.proof import prove
+
     typer.echo(f"uvf: {written} has them now; it flies to prove them")
     with bad_input_is_one_line():
         proof = prove(found.folder)

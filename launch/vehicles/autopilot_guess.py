@@ -30,6 +30,7 @@ SHARE = 0.7  # of the climb at full throttle
 DIVING, IDLE_SHARE = 1.15, 0.9  # of the trim speed, that a steep descent may take; of the sink with an idling engine there
 BANK, HOLDING = 0.7, 0.75  # tangent of the bank of a holding circle, and its largest share of that of a planned turn
 TURN_SHARE, LIFT_SHARE, LEAST_BANK = 0.6, 0.9, 0.3  # of the elevator's way from level flight to its stop, of the lift; rad
+BANKS = 61  # that are tried
 MARGIN = 1.1  # of a speed over that at which the wing stalls
 HIGHEST_ALPHA = 0.25  # rad, where a model tells of no stall
 IDLING = (0.0, 0.15, 0.3)
@@ -142,8 +143,8 @@ def planned_bank(body: AirBody, found: Mapping[str, float]) -> float:
     most = (1 - TURN_SHARE) * elevator(0.0) + TURN_SHARE * body.controls.elevator.lowest()
     lifts = (found["alpha_max"] - found["alpha_zero_lift"]) * speed**2 / (found["alpha_per_load"] * GRAVITY)
     carried = math.acos(min(1 / max(LIFT_SHARE * lifts, 1.0), math.cos(LEAST_BANK)))
-    held = [bank for bank in np.arange(LEAST_BANK, min(usual, carried), 0.01).tolist() if elevator(bank) > most]
-    return usual if carried > usual and elevator(usual) > most else max(held, default=LEAST_BANK)
+    held = (bank for bank in np.linspace(LEAST_BANK, usual, BANKS).tolist() if bank < carried and elevator(bank) > most)
+    return max(held, default=LEAST_BANK)
 
 
 def _crosswind(models: LinearModels, body: AirBody, airspeed: float) -> float:

@@ -113,7 +113,7 @@ def prove(folder: Path) -> Proof:
 
 def figures(flight: ProofFlight) -> dict[str, float]:
     """Those of GOALS, as far as it came."""
-    steps, found = flight.steps, {}
+    steps, found = flight.course.steps, {}
     if flight.t[-1] > steps.end and flight.course.air.turbulence is None:
         found[BANK] = _beyond(flight, np.abs(flight.bank), steps.right, steps.left)
         if steps.hold > steps.climb:
@@ -136,7 +136,7 @@ class Way:
     @classmethod
     def of(cls, flight: ProofFlight) -> "Way | None":
         """None for one that has not flown all of it."""
-        course, after = flight.course, flight.t > flight.steps.end
+        course, after = flight.course, flight.t > flight.course.steps.end
         x, y, _ = flight.position.T
         (east, north), (end, _), v = course.corner, course.end, course.airspeed
         near = NEAR * course.radius

@@ -86,9 +86,15 @@ class ProofCourse:
         return math.tau * self.radius / self.airspeed
 
     @property
+    def steps(self) -> "Steps":
+        """Of the sticks, before the mission; without a climb for what glides."""
+        climbs = 0.0 if self.glide else CLIMBED
+        return Steps(*np.cumsum([STEPS_AT, LEVELS, HELD, HELD, LEVELS, climbs, LEVELS]).tolist())
+
+    @property
     def longest(self) -> float:
         """Time [s] after which it ought to be over."""
-        return Steps.planned(bool(self.glide)).end + 1.5 * (AWAY + 2 * LEG) + (TURNS + LAPS) * self.lap + LANDS
+        return self.steps.end + 1.5 * (AWAY + 2 * LEG) + (TURNS + LAPS) * self.lap + LANDS
 
     @property
     def start(self) -> float:
@@ -119,11 +125,6 @@ class Steps(NamedTuple):
     hold: float
     end: float
 
-    @classmethod
-    def planned(cls, glides: bool) -> "Steps":
-        """Without a climb for what glides."""
-        return cls(*np.cumsum([STEPS_AT, LEVELS, HELD, HELD, LEVELS, 0.0 if glides else CLIMBED, LEVELS]).tolist())
-
     def sticks(self, t: float) -> tuple[float, float]:
         """Shares of bank and climb that are asked for at ``t`` [s], -1 to 1."""
         bank = 1.0 if self.right <= t < self.left else -1.0 if self.left <= t < self.level else 0.0
@@ -135,7 +136,6 @@ class ProofFlight:
     """What was seen of the truth, n samples, and of the surfaces, m samples."""
 
     course: ProofCourse
-    steps: Steps
     t: Floats  # (n,) s
     position: Floats  # (n, 3) m east, north, height
     climb: Floats  # (n,) m/s
@@ -157,6 +157,11 @@ class ProofFlight:
         return self.events[-1] if self.events else "nothing"
 
 
+def glide(params: AirParams) -> float:
+    """Slope [rad] down which a course leads, a little steeper than the glide of cruise; 0 with an engine."""
+    return 0.0 if params.throttle_climb else STEEPER * params.idle_sink / params.trim_airspeed
+
+
 def proof_flight(folder: Path, air: ProofAir) -> ProofFlight:
     """One flight of the vehicle in this folder. Raises BadInput."""
     file = load_vehicle(folder.parent, folder.name)
@@ -165,12 +170,11 @@ def proof_flight(folder: Path, air: ProofAir) -> ProofFlight:
         place = f"{folder / 'vehicle.yaml'}: sensors"
         raise BadInput(f"{place}: no {' and no '.join(missing)}, without which the autopilot flies nothing; add it")
     params = convert(file.params.get(SERVICE, {}), AirParams, str(folder / "vehicle.yaml"), ("params", SERVICE))
-    glide = 0.0 if params.throttle_climb else STEEPER * params.idle_sink / params.trim_airspeed
-    course = ProofCourse(params.trim_airspeed, params.hold_radius, glide, air)
+    course = ProofCourse(params.trim_airspeed, params.hold_radius, glide(params), air)
     site = _site(folder, file, course)
     hosts = catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")])
     with closing(Lockstep(hosts)) as lockstep:
-        pilot = _Pilot(lockstep, file.air, params)
+        pilot = _Pilot(lockstep, file.air, params, course.steps)
         lockstep.run(course.longest, pilot)
     return pilot.flight(course)
 
@@ -187,12 +191,12 @@ def _site(folder: Path, file: VehicleFile, course: ProofCourse) -> Scenario:
 class _Pilot:
     """Takes the sticks for the steps, gives the aircraft back to the mission, and writes down what it does."""
 
-    def __init__(self, lockstep: Lockstep, body: AirBody, params: AirParams) -> None:
+    def __init__(self, lockstep: Lockstep, body: AirBody, params: AirParams, steps: Steps) -> None:
         self._bus, self._body = lockstep.bus, body
         self._throttle = (params.trim_airspeed - params.min_airspeed) / (params.max_airspeed - params.min_airspeed)
         topic = topics.SURFACES.by(WRITER)
         self._sticks = self._bus.publisher(topic.at(NAME), SurfaceCommand.DESCRIPTOR.full_name, topic.qos)
-        self._steps = Steps.planned(not params.throttle_climb)
+        self._steps = steps
         self._flies = ""
         self._truth = self._kept(topics.TRUTH)
         self._surfaces = self._kept(topics.SURFACE_COMMAND)
@@ -237,7 +241,6 @@ class _Pilot:
         times = np.array([t for t, _ in self._surfaces])
         return ProofFlight(
             course,
-            self._steps,
             np.array([t for t, _ in self._truth]),
             np.array([(m.position.x, m.position.y, m.position.z) for m in truth]),
             np.array([m.velocity.z for m in truth]),

@@ -14,6 +14,7 @@ import yaml
 from benchmarks.autopilot.accuracy.course import HIGH, LOW, Course
 from benchmarks.autopilot.accuracy.score import Flight, score
 from launch import catalogue
+from launch.vehicles.proof_flight import glide
 from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.service import AutopilotAir
 from services.sim_air.service import SimAir
@@ -28,7 +29,6 @@ LONGEST = 2400.0  # s
 PLANE = "plane"
 WIND, SHARE = 10.0, 0.9  # m/s, from behind; of the climb and the sink that the aircraft has
 UP, DOWN = 600.0, 450.0  # m, of the legs that climb and descend
-STEEPER = 1.3  # than the glide of cruise
 PLACED = ("mount", "frame")  # of a sensor, whatever its preset
 
 
@@ -65,8 +65,8 @@ def course_site(model: str, case: Case, preset: str, folder: Path, root: Path = 
 def _within_reach(params: AirParams) -> Course:
     """Of slopes that the aircraft can fly with the wind from behind."""
     whole = Course(params.trim_airspeed)
-    if not params.throttle_climb:
-        return Course(params.trim_airspeed, 0.0, STEEPER * params.idle_sink / params.trim_airspeed)
+    if slope := glide(params):
+        return Course(params.trim_airspeed, 0.0, slope)
     fastest, designed = params.trim_airspeed + WIND, whole.scale * (HIGH - LOW)
     reached = [SHARE * climb * whole.scale * length / fastest for climb, length in ((params.climb_max, UP), (params.sink_max, DOWN))]
     return whole if min(reached) >= designed else Course(params.trim_airspeed, min(reached))

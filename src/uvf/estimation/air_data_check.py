@@ -144,8 +144,8 @@ class AirDataCheck:
                 self._by_lift.step(measured - lifted, dt)
             jump = self._jumps.step(measured, measured - expected, now.lift, JUMP * params.trim_airspeed, dt)
             if not self.gap:
-                self._limit = self._gusts(gap, expected, params, dt) + self._shear(now.height)
-                self._limit = JUMP_LEFT * abs(jump) if jump else self._limit
+                allowed = self._gusts(gap, expected, params, dt) + self._shear(now.height)
+                self._limit = JUMP_LEFT * abs(jump) if jump else allowed
             self._judge(gap, jump, params, dt)
         return replace(pressures, differential=0.5 * density * expected**2) if self.gap else pressures
 

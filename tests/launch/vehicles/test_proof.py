@@ -13,13 +13,13 @@ from typer.testing import CliRunner
 from launch.commands.vehicle import vehicle_app
 from launch.vehicles import proof, tuning
 from launch.vehicles.proof import AIRS, BANK, CIRCLE, CLIMB, CORNER, GOALS, HEIGHTS, LEGS, PLACE, SINK, SURFACES, Proof, figures
-from launch.vehicles.proof_flight import ProofCourse, ProofFlight, Steps, followed, proof_flight
+from launch.vehicles.proof_flight import ProofCourse, ProofFlight, followed, proof_flight
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
 
 COURSE = ProofCourse(20.0, 60.0, 0.0, AIRS["calm"])
-STEPS = Steps(12.0, 16.0, 22.0, 28.0, 32.0, 40.0, 44.0)
+STEPS = COURSE.steps
 
 
 def track(beside, sink):
@@ -46,7 +46,7 @@ def flight(beside=0.0, sink=0.5, standing=100, **changes):
     bank = np.where((t >= STEPS.right) & (t < STEPS.left), 0.4, 0.0)
     bank[(t >= STEPS.right + 1.0) & (t < STEPS.right + 1.2)] = 0.44
     surfaces = np.column_stack([np.radians(1.0) * np.sin(math.tau * t), np.zeros(len(t)), np.zeros(len(t))])
-    made = ProofFlight(COURSE, STEPS, t, position, climb, bank, t, surfaces, t[::5], np.full(len(t[::5]), beside), "", True, ["that is it"])
+    made = ProofFlight(COURSE, t, position, climb, bank, t, surfaces, t[::5], np.full(len(t[::5]), beside), "", True, ["that is it"])
     return replace(made, **changes)
 
 

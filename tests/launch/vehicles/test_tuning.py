@@ -60,7 +60,10 @@ def test_every_loop_has_its_margins_at_every_airspeed(tuning):
     assert len({loop.airspeed for loop in tuning.loops}) == 3
     for loop in tuning.loops:
         assert loop.stable
-        assert np.isnan(loop.margins.phase) or np.degrees(loop.margins.phase) > PHASE, (loop.name, loop.airspeed)  # nan: no crossing
+        if np.isnan(loop.margins.phase):  # no crossing: it never comes near to a gain of one
+            assert loop.margins.peak < 1.1, (loop.name, loop.airspeed)
+        else:
+            assert np.degrees(loop.margins.phase) > PHASE, (loop.name, loop.airspeed)
         assert abs(loop.margins.gain_db) > GAIN, (loop.name, loop.airspeed)
         assert loop.margins.peak < PEAK, (loop.name, loop.airspeed)
     assert tuning.unmet == []

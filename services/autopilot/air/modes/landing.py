@@ -121,9 +121,10 @@ class LandingMode(FlightPhase):
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         """Setpoint of this cycle of ``dt`` [s], from the circle over the approach and the flare to the end of the roll."""
         self._since += dt
-        mean = self._in_mean_wind(now, dt)
+        for mean, wind in zip(self._wind, (now.wind_north, now.wind_east), strict=True):
+            mean.step(wind, dt)
         if self._stage is LandingStage.CIRCLE:
-            return self._descend(now, mean, params)
+            return self._descend(now, params)
         if self._stage is LandingStage.FINAL:
             return self._final(now, params, dt)
         return self._roll(now, params, dt) if self._stage is LandingStage.ROLL else self._go_around(now, params)
@@ -151,12 +152,9 @@ class LandingMode(FlightPhase):
         top = math.inf if self._approach is None else self._approach.height - self.lane.aim.height - params.gear_height
         return (height, slope, flares) if height < top else (top, 0.0, False)
 
-    def _in_mean_wind(self, now: Estimate, dt: float) -> Estimate:
-        """For the choice of the lane: turbulence would turn it this way and that."""
-        north, east = self._wind
-        return replace(now, wind_north=north.step(now.wind_north, dt), wind_east=east.step(now.wind_east, dt))
-
-    def _descend(self, now: Estimate, mean: Estimate, params: AirParams) -> Setpoint:
+    def _descend(self, now: Estimate, params: AirParams) -> Setpoint:
+        north, east = (mean.value for mean in self._wind)
+        mean = replace(now, wind_north=north, wind_east=east)  # for the lane, which turbulence would turn this way and that
         if self.lane.tailwind(mean) > MOST_TAILWIND and (other := self._choose(mean)) != self.lane:
             self.lane = other
             self._circle = self._new_circle(now, params)
