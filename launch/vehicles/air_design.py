@@ -22,6 +22,7 @@ from uvf.models.yaml_data import BadInput
 
 ABOVE_SLOWEST = 1.05  # of the lowest airspeed, at which loops are looked at
 TURNING = (0.2, 5.0)  # rad/s, of a turn's beginning
+LEAST_DAMPING = 0.1  # 1/s, of rolls
 ROLL_SHARE = 0.6  # of the ailerons' way, for planned turns
 QUICKEST, LONGEST = 1.0, 10.0  # s, from level to the bank of a turn
 
@@ -34,10 +35,10 @@ class ModelledAircraft:
     cruise: FlightCondition
 
     def with_mix(self, params: AirParams) -> AirParams:
-        """With the rudder that cancels what ailerons yaw, to begin with."""
+        """With the rudder that cancels what a steady roll yaws, by its ailerons and by its rate, to begin with."""
         side = self.cruise.lateral
-        power = side.slope("r", "delta_r")
-        mix = -side.slope("r", "delta_a") / power if power else 0.0
+        power, rolling = side.slope("r", "delta_r"), -side.slope("p", "delta_a") / min(side.slope("p", "p"), -LEAST_DAMPING)
+        mix = -(side.slope("r", "delta_a") + side.slope("r", "p") * rolling) / power if power else 0.0
         return msgspec.structs.replace(params, rudder_mix=min(max(mix, -1.0), 1.0))
 
 

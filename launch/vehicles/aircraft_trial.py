@@ -9,6 +9,8 @@ import msgspec
 import numpy as np
 
 from launch.vehicles.aircraft_rules import ABOUT_LEVEL, HEIGHT, RIGHT_WAY, SEA_LEVEL, comes_to_rest, effect, throttle_works
+from services.sim_air.analysis.linear import held_still
+from services.sim_air.analysis.performance import stall
 from services.sim_air.engine.airframe import Airframe
 from services.sim_air.engine.states import Held, InitialState
 from services.sim_air.engine.trim import Trim
@@ -20,9 +22,11 @@ from uvf.models.vehicle.air import AirBody, Surface
 from uvf.models.yaml_data import BadInput
 
 RATES = (120.0, 240.0, 480.0, 960.0, 1920.0)  # Hz; the first is JSBSim's own
-SPEEDS = (1.0, 1.2, 0.85, 1.4, 0.7, 1.7, 2.0)  # of the first guess
+SPEEDS = (1.0, 1.1, 1.2, 0.85, 1.4, 0.7, 1.7, 2.0)  # of the first guess
 USEFUL = (0.1, 0.9)  # throttle of a cruise from which there is something left to both sides
 CLIMB = 0.02  # rad
+MOST_USES = 2
+ABOVE_STALL = 1.4  # times the speed at which the wing stalls: for turns, and for gusts
 TURNS = 200  # physics steps after which a surface stands
 TRAVEL = {"aileron": "left_aileron", "elevator": "elevator", "rudder": "rudder", "flap": "flap"}
 LEAST = 0.02  # rad of travel that is one
@@ -156,12 +160,12 @@ def _with_rate(folder: Path, body: AirBody, notes: Notes) -> AirBody:
 
 
 def _with_speed(airframe: Airframe, body: AirBody, notes: Notes) -> AirBody:
-    """The first speed at which it climbs and turns with some throttle left, else the first at which it flies at all."""
+    """The first speed well above the stall at which it climbs and turns with some throttle left, else the first that comes near to it."""
     flown = list(_flights(airframe, body.trim_speed))
     if not flown:
         notes.add(f"guessed: trim_speed; no steady level flight was found from {min(SPEEDS):g} to {max(SPEEDS):g} times that")
         return body
-    speed, trim, _ = min(flown, key=lambda found: not found.useful)
+    speed, trim, _ = max(flown, key=lambda found: found.uses)
     notes.add(f"found: steady flight at {speed:g} m/s with {trim.throttle:.2f} of the throttle, elevator {trim.elevator:.3f} rad")
     return msgspec.structs.replace(body, trim_speed=speed)
 
@@ -169,7 +173,7 @@ def _with_speed(airframe: Airframe, body: AirBody, notes: Notes) -> AirBody:
 class _Flight(NamedTuple):
     speed: float  # m/s
     trim: Trim
-    useful: bool
+    uses: int  # 2: for all that is flown; 1: near to the stall; 0: for level flight alone
 
 
 def _flights(airframe: Airframe, guess: float) -> Iterator[_Flight]:
@@ -181,9 +185,16 @@ def _flights(airframe: Airframe, guess: float) -> Iterator[_Flight]:
         except BadInput:
             continue
         cruises = not airframe.powered or USEFUL[0] < trim.throttle < USEFUL[1]
-        yield _Flight(speed, trim, useful := cruises and _manoeuvres(airframe, speed))
-        if useful:
+        manoeuvres = cruises and _manoeuvres(airframe, speed)
+        yield _Flight(speed, trim, uses := manoeuvres + (manoeuvres and _is_clear_of_stall(airframe, speed)))
+        if uses == MOST_USES:
             return
+
+
+def _is_clear_of_stall(airframe: Airframe, speed: float) -> bool:
+    with held_still(airframe):
+        _, stalled = stall(airframe, speed, HEIGHT)
+    return speed >= ABOVE_STALL * stalled
 
 
 def _manoeuvres(airframe: Airframe, speed: float) -> bool:

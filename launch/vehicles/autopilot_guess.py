@@ -29,7 +29,8 @@ STEEPEST = 0.12  # climb and sink over the speed
 SHARE = 0.7  # of the climb at full throttle
 DIVING, IDLE_SHARE = 1.15, 0.9  # of the trim speed, that a steep descent may take; of the sink with an idling engine there
 BANK, HOLDING = 0.7, 0.75  # tangent of the bank of a holding circle, and its largest share of that of a planned turn
-TURN_SHARE, LIFT_SHARE, LEAST_BANK = 0.6, 0.9, 0.3  # of the elevator's way from level flight to its stop, of the lift; rad
+TURN_SHARE, LIFT_SHARE, POWER_SHARE = 0.6, 0.8, 0.5  # of the elevator's way from level flight to its stop, of the lift, of the throttle
+LEAST_BANK = 0.3  # rad
 BANKS = 61  # that are tried
 MARGIN = 1.1  # of a speed over that at which the wing stalls
 HIGHEST_ALPHA = 0.25  # rad, where a model tells of no stall
@@ -53,7 +54,7 @@ def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
     found["rudder_force"] = _within(models.lateral.slope("v", "delta_r"), -50.0, 50.0)
     found["flap_alpha"] = _within(_flap_lift(airframe, models.trim), 0.0, 1.0)
     found |= _slowest(airframe, body, found) | {"idle_sink": _within(_idle_sink(airframe, body, body.trim_speed), 0.1, 20.0)}
-    found["turn_bank"] = planned_bank(body, found)
+    found |= {"turn_bank": planned_bank(body, found), "bank_limit": sustained_bank(found, 1.0)}
     found["hold_radius"] = max(body.trim_speed**2 / (GRAVITY * min(BANK, HOLDING * math.tan(found["turn_bank"]))), 20.0)
     found["crosswind_max"] = _crosswind(models, body, found["min_airspeed"])
     dives = IDLE_SHARE * _idle_sink(airframe, body, DIVING * body.trim_speed)
@@ -128,7 +129,7 @@ def _slowest(airframe: Airframe, body: AirBody, found: Mapping[str, float]) -> d
 
 
 def planned_bank(body: AirBody, found: Mapping[str, float]) -> float:
-    """Bank [rad] of planned turns: the usual one, or as steep as shares of the lift and of the elevator carry and hold.
+    """Bank [rad] of planned turns: the usual one, or as steep as shares of the lift, of the elevator and of the throttle carry and hold.
 
     The elevator holds the angle of attack, and the pitch rate against its damping; the rest of it begins and ends turns.
     """
@@ -143,8 +144,18 @@ def planned_bank(body: AirBody, found: Mapping[str, float]) -> float:
     most = (1 - TURN_SHARE) * elevator(0.0) + TURN_SHARE * body.controls.elevator.lowest()
     lifts = (found["alpha_max"] - found["alpha_zero_lift"]) * speed**2 / (found["alpha_per_load"] * GRAVITY)
     carried = math.acos(min(1 / max(LIFT_SHARE * lifts, 1.0), math.cos(LEAST_BANK)))
+    carried = min(carried, sustained_bank(found, POWER_SHARE))
     held = (bank for bank in np.linspace(LEAST_BANK, usual, BANKS).tolist() if bank < carried and elevator(bank) > most)
     return max(held, default=LEAST_BANK)
+
+
+def sustained_bank(found: Mapping[str, float], share: float) -> float:
+    """Bank [rad] of the level turn that a share of the throttle above cruise sustains; the usual limit without an engine."""
+    usual = AirParams().bank_limit
+    if not found["throttle_climb"] or not found["throttle_load"]:
+        return usual
+    load = math.sqrt(1 + share * max(1 - found["trim_throttle"], 0.0) / found["throttle_load"])
+    return max(min(math.acos(1 / load), usual), LEAST_BANK)
 
 
 def _crosswind(models: LinearModels, body: AirBody, airspeed: float) -> float:

@@ -56,6 +56,16 @@ def test_without_an_engine_it_glides_at_the_airspeed_asked_for_and_leaves_the_th
     assert airspeeds(seen)[2000:].mean() == pytest.approx(25.0, abs=0.5) and np.ptp(airspeeds(seen)[3000:]) < 0.5
 
 
+def test_lifted_by_a_strong_updraught_it_still_lowers_its_nose_for_the_airspeed():
+    """The path that it climbs along over the ground is none through the air: pitched up for it, a glider stalls."""
+    gains = {"throttle_climb": 0.0, "trim_throttle": 0.0, "throttle_speed": 0.0, "idle_sink": 1.5}
+    gains |= {"climb_p": 0.05, "climb_i": 0.75, "airspeed_pitch_p": 0.08}  # as those of a glider are designed
+    glider, loops = type(PARAMS)(**{**KEEN, **gains}), EnergyLoops()
+    lifted = Cycle(cruising(airspeed=20.0, climb=5.0, pitch=0.1), glider, DT)
+    pitches = [loops.step(lifted, cruise(height=900.0)(0.0))[0] for _ in range(1500)]
+    assert pitches[-1] < lifted.alpha
+
+
 def test_when_the_motor_is_back_it_climbs_back_and_settles_without_overshoot_of_the_throttle_trim():
     point = Point(height=200.0, engine=0.0)
     fly(point, cruise(height=200.0), 30.0)
@@ -129,6 +139,34 @@ def test_the_airspeed_asked_for_rises_with_the_load_of_a_turn():
 
     assert asked(0.0) == PARAMS.min_airspeed
     assert asked(1.05) > 21.0
+
+
+def test_at_full_throttle_pitch_answers_an_airspeed_that_is_low_by_a_gain_of_its_own():
+    """With that of the throttle an aircraft that cruises near full throttle would pitch with every gust."""
+
+    def change(**gains):
+        params, lacking = type(PARAMS)(**{**KEEN, **gains}), []
+        for airspeed in (23.0, 22.0):
+            loops = EnergyLoops()
+            loops.step(Cycle(cruising(airspeed=airspeed, climb=0.0), params, DT), AltitudeAirspeedSetpoint(0.0, 200.0, 0.0, 25.0))
+            lacking.append(loops.lacking)
+        return lacking[0] - lacking[1]
+
+    assert change(airspeed_pitch_p=0.3) > change(airspeed_pitch_p=0.1) + 0.3
+    assert change(airspeed_p=2.0) == change(airspeed_p=0.5)
+
+
+def test_levelling_out_of_a_steep_climbing_turn_leaves_no_more_climb_to_win_back():
+    """With wings level more airspeed could be lent to the climb: were the bank to give way for that, it would swing to and fro."""
+    heavy = type(PARAMS)(**{**KEEN, "alpha_max": 0.08, "min_airspeed": 22.8, "airspeed_p": 0.9, "throttle_load": 0.08})
+    turn = AltitudeAirspeedSetpoint(1.0, 140.0, 3.0, 25.0)
+
+    def lacking(roll):
+        loops = EnergyLoops()
+        loops.step(Cycle(cruising(airspeed=24.5, climb=0.0, roll=roll), heavy, DT), turn)
+        return loops.lacking
+
+    assert [lacking(roll) for roll in (0.0, 0.2, 0.4)] == pytest.approx([lacking(0.5)] * 3, abs=0.01)
 
 
 def test_in_gusts_height_and_airspeed_are_held_and_the_throttle_does_not_chase_them():

@@ -20,6 +20,7 @@ from services.autopilot.air.service import AutopilotAir
 from services.sim_air.service import SimAir
 from uvf.control import thesis
 from uvf.maths import rotations
+from uvf.maths.geodesy import LocalTangent
 from uvf.models.scenario import ROOT, Scenario, load_scenario
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.vehicle.sensor_presets import PRESETS
@@ -87,11 +88,13 @@ def _with_sensors(site: Scenario, preset: str) -> Scenario:
 class Probe:
     """Looks into both services at every tick."""
 
-    def __init__(self, lockstep: Lockstep) -> None:
+    def __init__(self, lockstep: Lockstep, site: Scenario) -> None:
         services = [shell.service for shell in lockstep.shells]
         (sim,) = (s for s in services if isinstance(s, SimAir))
         (self.autopilot,) = (s for s in services if isinstance(s, AutopilotAir))
         self.craft = sim._stage.aircraft[PLANE]
+        origin = site.world.origin
+        self._tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
         self.rows: list[tuple[float, ...]] = []
 
     def __call__(self, t: float) -> bool:
@@ -99,7 +102,8 @@ class Probe:
         pilot, now, motion = self.autopilot._mode_manager, self.autopilot._now, self.craft.motion
         if now is None:
             return True
-        east, north, height = motion.position.tolist()
+        east, north, _ = motion.position.tolist()
+        height = self._tangent.geodetic(motion.position)[2] - self._tangent.altitude  # over the plane it grows beyond some kilometres
         roll, _, _ = rotations.to_euler(motion.world_from_body)
         s, wind = self.craft.actuators.position, self.craft.wind
         piece, params = pilot.navigator._piece, self.autopilot.params
@@ -125,7 +129,7 @@ def fly(
     hosts = catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")])
     lockstep = Lockstep(hosts)
     with closing(lockstep):
-        probe = Probe(lockstep)
+        probe = Probe(lockstep, site)
         own = probe.autopilot.params
         gains = thesis.preset(own.trim_airspeed) if law == "thesis" else {}
         probe.autopilot.params = msgspec.structs.replace(own, **{**gains, **params})

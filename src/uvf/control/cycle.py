@@ -37,10 +37,10 @@ class Cycle:
         lifted = lifting * self.eas**2 / (per_load * GRAVITY)
         self.load_limit = min(lifted, params.load_max)
         """Load factor [-] that the wing carries at ``alpha_max`` now, and no more than ``load_max``."""
-        stalled = math.sqrt(params.alpha_per_load * self.load * GRAVITY / lifting)
-        self.stalled = stalled * self.speed / self.eas
+        self._stalled = math.sqrt(per_load * GRAVITY / lifting) * self.speed / self.eas
+        self.stalled = self._stalled * math.sqrt(self.load)
         """True airspeed [m/s] at which the load of now takes ``alpha_max``."""
-        self.slowest = max(params.min_airspeed, self.stalled)
+        self.slowest = self.slowest_with(self.load)
         """The lowest airspeed [m/s] to ask for with the load of now."""
         felt = params.alpha_zero_lift + params.alpha_per_load * now.lift / self.eas**2
         self.highest_pitch = min(now.pitch + (params.alpha_max - felt) * math.cos(roll), params.pitch_limit)
@@ -52,6 +52,10 @@ class Cycle:
     def alpha_with(self, load: float) -> float:
         """Angle of attack [rad] that carries a load factor [-]."""
         return self.params.alpha_zero_lift + self.params.alpha_per_load * load * GRAVITY / self.eas**2
+
+    def slowest_with(self, load: float) -> float:
+        """The lowest airspeed [m/s] to ask for with a load factor [-]."""
+        return max(self.params.min_airspeed, self._stalled * math.sqrt(load))
 
     def bank_with(self, upward: float) -> float:
         """Most bank [rad] at which ``load_limit`` leaves lift for an acceleration upward [m/s^2], too.

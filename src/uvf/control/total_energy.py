@@ -14,13 +14,13 @@ import math
 from dataclasses import dataclass
 
 from uvf.control.commands import AltitudeAirspeedSetpoint
-from uvf.control.cycle import STEEPEST, Cycle, clip
+from uvf.control.cycle import FULL_BANK, STEEPEST, Cycle, clip
 from uvf.estimation.state import Estimate
 from uvf.maths.filters import Integral
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
-CLIMB_TRIM_LIMIT = 0.15  # rad, of the integrator on pitch
+CLIMB_TRIM_LIMIT = 0.35  # rad, of the integrator on pitch: what an updraught lifts the path, at the lowest airspeed, too
 ACCELERATION_LIMIT = 2.0  # m/s^2 asked for
 TOO_SLOW = 0.95  # of the slowest airspeed asked for: no climb and full throttle
 LEAST_SLOPE = 1e-3  # s/m, of throttle per climb
@@ -50,6 +50,7 @@ class Power:
     climb: float
     faster: float  # V V' / g
     reached: float  # the climb, as far as throttle can make both
+    in_turn: float  # the same in the turn that is asked for: what its bank makes room for
 
 
 class EnergyLoops:
@@ -75,8 +76,8 @@ class EnergyLoops:
         if self._throttle is not None:
             self._power.step(cycle, self._throttle)
         asked = self._asked(cycle, wanted)
-        self.lacking = asked.reached - cycle.now.climb
-        pitch, error = self._pitch(cycle, asked.reached), self.lacking / cycle.speed
+        self.lacking = asked.in_turn - cycle.now.climb
+        pitch, error = self._pitch(cycle, asked.reached), (asked.reached - cycle.now.climb) / cycle.speed
         lowest = max(-cycle.params.pitch_limit, wanted.lowest_pitch)
         if (error > 0 and pitch < cycle.highest_pitch) or (error < 0 and pitch > lowest):
             self._trim.step(cycle.params.climb_i * error, cycle.dt)
@@ -95,9 +96,14 @@ class EnergyLoops:
         faster = _acceleration(cycle, self._airspeed(cycle, wanted))
         higher = 0.0 if wanted.height is None else wanted.height - cycle.now.height
         climb = min(max(wanted.climb + params.altitude_p * higher, -params.sink_max), params.climb_max * _room(cycle))
-        most = made(cycle, 1.0) + self._power.unexplained - _acceleration(cycle, self._airspeed(cycle, wanted) - _lent(cycle, wanted))
-        least = made(cycle, wanted.throttle or 0.0) + self._power.unexplained - _acceleration(cycle, params.max_airspeed)
-        return Power(climb, faster, min(max(climb, least), most))
+        full, airspeed = made(cycle, 1.0) + self._power.unexplained, self._airspeed(cycle, wanted)
+        most = full - _exchanged(cycle, airspeed - _lent(cycle, wanted, cycle.slowest))
+        turn = max(cycle.load, 1 / math.cos(min(abs(wanted.bank), cycle.bank_with(0.0), FULL_BANK)))
+        drag = params.throttle_load * (turn**2 - cycle.load**2) / _slope(cycle)
+        in_turn = full - drag - _exchanged(cycle, airspeed - _lent(cycle, wanted, cycle.slowest_with(turn)))
+        least = made(cycle, wanted.throttle or 0.0) + self._power.unexplained - _exchanged(cycle, params.max_airspeed)
+        reached = min(max(climb, least), most)
+        return Power(climb, faster, reached, max(min(reached, in_turn), min(reached, 0.0)))
 
     def _pitch(self, cycle: Cycle, climb: float) -> float:
         """rad: path angle plus the part of the angle of attack that lies in the vertical plane."""
@@ -111,20 +117,25 @@ class EnergyLoops:
 
 
 def _acceleration(cycle: Cycle, airspeed: float) -> float:
-    """m/s, the power V V' / g towards this airspeed [m/s]."""
+    """m/s, the power V V' / g towards this airspeed [m/s], as the throttle makes it."""
     return cycle.speed / GRAVITY * clip(cycle.params.airspeed_p * (airspeed - cycle.now.airspeed), ACCELERATION_LIMIT)
 
 
-def _lent(cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> float:
-    """m/s of airspeed that a climb may take beyond full throttle, for a while: at most half of what is above the slowest.
+def _exchanged(cycle: Cycle, airspeed: float) -> float:
+    """m/s of climb that goes into this airspeed [m/s], where only pitch can make it: slowly, for pitch must not follow the gusts."""
+    return cycle.speed / GRAVITY * clip(cycle.params.airspeed_pitch_p * (airspeed - cycle.now.airspeed), ACCELERATION_LIMIT)
+
+
+def _lent(cycle: Cycle, wanted: AltitudeAirspeedSetpoint, slowest: float) -> float:
+    """m/s of airspeed that a climb may take beyond full throttle, for a while: at most half of what is above the ``slowest``.
 
     The lower it is already, the less, and none from where that airspeed is worth no more height: so a downdraught
     is flown through on the path, while a long climb and a glide come back to the airspeed asked for.
     """
-    spare = wanted.airspeed - cycle.slowest
+    spare = wanted.airspeed - slowest
     if wanted.height is None or spare <= 0:
         return 0.0
-    worth = (wanted.airspeed**2 - cycle.slowest**2) / (2 * GRAVITY)
+    worth = (wanted.airspeed**2 - slowest**2) / (2 * GRAVITY)
     return spare / 2 * min(max(1 - (wanted.height - cycle.now.height) / worth, 0.0), 1.0)
 
 

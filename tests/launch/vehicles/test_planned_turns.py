@@ -8,7 +8,7 @@ import pytest
 
 from launch.vehicles.aircraft_rules import SEA_LEVEL
 from launch.vehicles.aircraft_trial import level
-from launch.vehicles.autopilot_guess import planned_bank
+from launch.vehicles.autopilot_guess import planned_bank, sustained_bank
 from services.sim_air.engine.airframe import Airframe
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.scenario import ROOT
@@ -22,6 +22,9 @@ FIGURES = {
     "elev_zero_alpha": -0.0328,
     "elev_per_alpha": -0.852,
     "pitch_ff": 0.118,
+    "trim_throttle": 0.637,
+    "throttle_climb": 0.039,
+    "throttle_load": 0.0108,
 }
 """Of stick25, as tune finds them."""
 
@@ -55,3 +58,12 @@ def test_one_that_hardly_holds_level_flight_turns_gently():
 def test_a_wing_that_carries_little_more_than_the_weight_turns_gently():
     assert planned_bank(stick25(0.436), FIGURES | {"alpha_max": 0.06}) == pytest.approx(0.3, abs=0.02)
     assert 0.5 < planned_bank(stick25(0.436), FIGURES | {"alpha_max": 0.09}) < 0.85
+
+
+def test_with_little_throttle_to_spare_turns_are_flatter_and_the_bank_is_limited_to_what_full_throttle_sustains():
+    weak = FIGURES | {"trim_throttle": 0.855, "throttle_load": 0.0821}
+    full = sustained_bank(weak, 1.0)
+    assert 0.0821 * (1 / math.cos(full) ** 2 - 1) == pytest.approx(1 - 0.855)
+    assert 0.6 < planned_bank(stick25(0.436), weak) < full - 0.1
+    assert sustained_bank(FIGURES, 1.0) == AirParams().bank_limit
+    assert sustained_bank(weak | {"throttle_climb": 0.0}, 1.0) == AirParams().bank_limit  # a glider has another way to pay

@@ -20,7 +20,7 @@ from uvf.guidance.approach import Approach
 from uvf.guidance.route import Circle, Place
 from uvf.guidance.runways import Runway
 from uvf.guidance.vector_field import line_reference
-from uvf.maths.atmosphere import power
+from uvf.maths.atmosphere import logarithmic, power
 from uvf.maths.filters import RunningMean
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
@@ -35,9 +35,13 @@ ALIGNED = 0.3  # rad, of the course on leaving the circle
 GUST_SHARE, GUST_MOST = 0.4, 0.2  # of the wind, of min_airspeed: what is added to it on the approach
 COMMITTED = 12.0  # m: below it, without satellites, it is landed by dead reckoning
 GATE = 10.0, 2.0  # m of height, between which the approach has to be a stable one
+ROUGHNESS, SHEAR_AHEAD = 0.046, 0.5  # m, of a strip (MIL-F-8785C); s, in which pitch and throttle answer to what the wind will have lost
 TOO_HIGH, TOO_FAST = 3.0, 7.0  # m, m/s
 FLARE_TIME = 3.0  # s
-LEAD = 0.5  # s, by which the sink asked for is ahead of the path: the climb follows that much later
+LEAD, EARLY = (
+    0.5,
+    0.4,
+)  # s, by which the sink asked for is ahead of the path, for the climb follows later; and the path of the point to touch at
 TOUCH_SINK = 0.4  # m/s
 TOUCH_SPEED, SLOWS_BELOW = 0.96, 3.0  # of min_airspeed; m
 DECRAB_BELOW = 0.7  # m
@@ -47,7 +51,7 @@ MOST_SINK, SINK_PER_M = 0.6, 0.4  # m/s, 1/s: to come down onto the path of the 
 NOSE_UP_BELOW, NOSE_GIVES = 1.0, 0.04  # m, rad
 LATE_PER_M, MOST_LATE = 0.04, 0.4  # 1/s, m/s
 LIFTS_BELOW = 8.0  # m; from here on the flaps make lift at once
-LIFT_P, LIFT_A = 4.0, 1.0  # 1/s, per climb rate that is wanting; per lift that is not felt
+LIFT_P, LIFT_A = 4.0, 2.0  # 1/s, per climb rate that is wanting; per lift that is not felt
 TOUCHED, STUCK, STILL = 0.12, 0.15, 0.2  # m; m/s less sink than asked for; m/s
 FEELS_BELOW = 0.7  # m; without a range finder it goes on sinking from here on, wherever the ground is
 IDLES_BELOW = 0.5  # m
@@ -188,9 +192,10 @@ class LandingMode(FlightPhase):
         wheels = self._wheels
         wheels.step(now, self._senses.clearance, distance, params, dt)
         self._low = wheels.height < COMMITTED
-        wanted, _, flares = self._path(distance, now.ground_speed, params)
-        _, slope, _ = self._path(distance - LEAD * now.ground_speed, now.ground_speed, params)
-        fast = self._airspeed(now, params)
+        ahead = distance - EARLY * now.ground_speed
+        wanted, _, flares = self._path(ahead, now.ground_speed, params)
+        _, slope, _ = self._path(ahead - LEAD * now.ground_speed, now.ground_speed, params)
+        fast, lost = self._airspeed(now, params), self._shear(now, params) if flares else 0.0
         if why := self._unstable(now, wheels.height, wheels.height - wanted, right, fast):
             self.around(why)
         climb = -slope * now.ground_speed + (params.flare_p if flares else params.altitude_p) * (wanted - wheels.height)
@@ -199,12 +204,13 @@ class LandingMode(FlightPhase):
             if self._senses.clearance is None and wheels.height < FEELS_BELOW:
                 climb = min(climb, -TOUCH_SINK)
         climb += now.climb - wheels.climb  # as the estimate has it
+        raised = climb + higher_by(now, lost, params)
         if flares and self._has_touched(now, climb, dt):
             self._gyros, self._touched_at = Gyros(now), max(now.pitch, nose_up(now, params))
             wheels.touched(now, params)
             self._to(LandingStage.ROLL)
-        lift = self._lift(now, climb) if wheels.height < LIFTS_BELOW else 0.0
-        return Setpoint(self._down(now, params, distance, climb, fast), params.land_flap, lift=lift, firm=True)
+        lift = self._lift(now, raised) if wheels.height < LIFTS_BELOW else 0.0
+        return Setpoint(self._down(now, params, distance, raised, fast + lost), params.land_flap, lift=lift, firm=True)
 
     def _down(self, now: Estimate, params: AirParams, distance: float, climb: float, airspeed: float) -> PathSetpoint:
         """Along the lane; near the ground wings about level, then the nose along the strip and the throttle closing."""
@@ -220,6 +226,13 @@ class LandingMode(FlightPhase):
     def _lift(self, now: Estimate, climb: float) -> float:
         """m/s^2 that are wanting: by the climb, and by the lift that is felt, which tells of a gust before it has moved anything."""
         return LIFT_P * (climb - now.climb) + LIFT_A * (GRAVITY - self._senses.specific_force_up)
+
+    def _shear(self, now: Estimate, params: AirParams) -> float:
+        """m/s of headwind that it will have sunk out of before pitch and throttle have answered."""
+        height = max(self._wheels.height, 0.0) + params.gear_height
+        below = max(height - max(-now.climb, TOUCH_SINK) * SHEAR_AHEAD, params.gear_height)
+        here, there = (logarithmic(h, ROUGHNESS, GROUND_WIND) for h in (height, below))
+        return max(-self.lane.tailwind(now), 0.0) * (1 - there / here)
 
     def _airspeed(self, now: Estimate, params: AirParams) -> float:
         wind = math.hypot(now.wind_north, now.wind_east)
@@ -303,6 +316,13 @@ def nose_up(now: Estimate, params: AirParams, faster: float = 0.0) -> float:
     """
     cycle = Cycle(now, params, 0.0)
     return cycle.alpha_with(1.0) - params.flap_alpha * params.land_flap - (TOUCH_SINK + faster) / cycle.speed - NOSE_GIVES
+
+
+def higher_by(now: Estimate, lost: float, params: AirParams) -> float:
+    """Climb rate [m/s] to ask for beyond what is wanted, so that pitch makes up for the lift that goes with ``lost`` airspeed [m/s]."""
+    cycle = Cycle(now, params, 0.0)
+    slower = max(1 - lost / cycle.speed, 0.5)
+    return params.alpha_per_load * GRAVITY / cycle.eas**2 * (slower**-2 - 1) * cycle.speed / (1 + params.climb_p)
 
 
 def touch_throttle(now: Estimate, params: AirParams, climb: float, airspeed: float, height: float) -> float:

@@ -66,6 +66,7 @@ def loops(flight: FlightCondition, delays: ActuatorDelays, params: AirParams, po
     yield from _of(lateral_loops.lateral_flow(OMEGA, flight, delays, params), lateral_loops.LOOPS, flight)
     if powered:
         yield from _of(longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, params), longitudinal_loops.LOOPS, flight)
+        yield from _of(longitudinal_loops.gliding_flow(OMEGA, flight, delays, params), longitudinal_loops.AT_FULL_THROTTLE, flight)
     else:
         yield from _of(longitudinal_loops.gliding_flow(OMEGA, flight, delays, params), longitudinal_loops.GLIDING, flight)
     if flight.airspeed < FINAL_UP_TO * params.trim_airspeed:

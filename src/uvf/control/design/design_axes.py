@@ -24,6 +24,7 @@ TURBULENCE, HEIGHT = "moderate", 100.0  # m
 BANK_OFF, SLOW_BANK_OFF, PITCH_OFF = (0.05, 1.0), (0.025, 20.0), (0.01, 5.0)
 """rad and s: disturbances that come on bank and pitch, and how long they last. A bank that is off as long as a turn is what a circle meets:
 its feed-forward is not that of this aircraft."""
+MIX = 0.5  # the least share of the rudder that a roll takes: to gusts alone none of it would be best
 LATERAL = {
     "roll_time": (0.1, 2.0),
     "roll_p": (1e-4, 2.0),
@@ -44,13 +45,15 @@ LONGITUDINAL = {
     "airspeed_p": (0.08, 2.0),
     "power_pole": (0.15, 5.0),
 }
+BY_PITCH = {"airspeed_pitch_p": (0.08, 2.0)}
 FINAL_LATERAL = ("roll_time", "roll_p", "roll_i", "course_p", "k_path")
 FINAL_LONGITUDINAL = ("climb_p", "pitch_time", "pitch_p", "pitch_i")
 """Those that the final approach has of its own, called ``final_*``; and ``flare_p``."""
 FLARE = {"flare_p": (0.2, 2.5)}
 FINAL = (*(f"final_{name}" for name in (*FINAL_LATERAL, *FINAL_LONGITUDINAL)), *FLARE)
 """Gains that are searched for, within these limits in their own units."""
-LATERAL_STARTS = ({"yaw_damping": (1.0, 4.0)}, {"rudder_mix": (1.0, 0.5, 0.1)}, {"course_p": (1.0, 0.4), "k_path": (1.0, 0.4)})
+LATERAL_STARTS = ({"yaw_damping": (1.0, 4.0)}, {"rudder_mix": (1.0, MIX)}, {"course_p": (1.0, 0.4), "k_path": (1.0, 0.4)})
+FULL_THROTTLE_STARTS = ({"airspeed_pitch_p": (1.0, 0.3)},)
 LONGITUDINAL_STARTS = ({"pitch_p": (1.0, 3.0)}, {"pitch_i": (1.0, 0.3)}, {"climb_p": (1.0, 0.4)}, {"altitude_p": (1.0, 0.4)})
 """Factors of the gains of a rule of thumb, of which the best are begun with: aircraft differ most in these."""
 STIFF = {"roll_p": 0.15, "roll_i": 0.3, "pitch_p": 0.3, "pitch_i": 1.0}
@@ -58,6 +61,7 @@ STIFF = {"roll_p": 0.15, "roll_i": 0.3, "pitch_p": 0.3, "pitch_i": 1.0}
 STEEP = 0.3  # 1/s, with which a path is approached at least
 SLOWEST, SLOWER = 0.5, 4.0  # s, and of the delays: the longest time constant of an attitude
 ASIDE, ABOVE, FASTER = 0.5, 0.5, 0.7  # m, m, m/s: errors in turbulence, each worth as much as the surfaces' whole budget
+SHORT_OF_POWER = 2.0  # m/s, of the airspeed while the throttle is at its stop, where the height counts, too
 DESIGN_SPEED = 20.0  # m/s, up to which lengths are those; they grow with a higher one
 FINAL_SHARE, FINAL_WAY = 0.3, 3.0  # of ABOVE, of PITCH_WAY: budgets near the ground
 LEVEL = 0.05  # rad of bank in turbulence, worth a whole budget there
@@ -99,10 +103,15 @@ class Axis:
     fastest: float = np.inf  # m/s, up to which it is flown so
 
 
-def axes(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> tuple[Axis, Axis]:
-    """Lateral and longitudinal loops in cruise; firmness: above 1 errors count more, the motion of the surfaces less."""
-    longitudinal = _longitudinal if aircraft.powered else _gliding
-    return _lateral(aircraft, params, firmness), longitudinal(aircraft, params, firmness)
+def axes(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> list[Axis]:
+    """Lateral and longitudinal loops in cruise; firmness: above 1 errors count more, the motion of the surfaces less.
+
+    With an engine there is a third: pitch that holds the airspeed while the throttle is at its stop, with the gains of the second.
+    """
+    across = _lateral(aircraft, params, firmness)
+    if not aircraft.powered:
+        return [across, _gliding(aircraft, params, firmness)]
+    return [across, _longitudinal(aircraft, params, firmness), _at_full_throttle(aircraft, params, firmness)]
 
 
 def as_in_cruise(params: AirParams) -> AirParams:
@@ -136,7 +145,7 @@ def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
     gains = LATERAL | _inner("roll", aircraft.delays.total("aileron"), params.roll_ff, LATERAL)
     gains["k_path"] = STEEP / (params.trim_airspeed * params.chi_inf * 2 / np.pi), LATERAL["k_path"][1]
     if params.rudder_mix:
-        gains["rudder_mix"] = (1e-3, abs(params.rudder_mix))
+        gains["rudder_mix"] = (MIX * abs(params.rudder_mix), abs(params.rudder_mix))
     return Axis(gains, lateral_loops.LOOPS, partial(lateral_loops.lateral_flow, OMEGA), wanted, LATERAL_STARTS)
 
 
@@ -153,15 +162,31 @@ def _longitudinal(aircraft: AircraftLoops, params: AirParams, firmness: float = 
 
 
 def _gliding(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
+    gains = {name: limits for name, limits in LONGITUDINAL.items() if name not in ("altitude_p", "airspeed_p")} | BY_PITCH
+    gains |= _inner("pitch", aircraft.delays.total("elevator"), params.pitch_ff, LONGITUDINAL)
+    return _by_pitch(aircraft, params, FASTER / firmness, gains, longitudinal_loops.GLIDING, LONGITUDINAL_STARTS)
+
+
+def _at_full_throttle(aircraft: AircraftLoops, params: AirParams, firmness: float) -> Axis:
+    return _by_pitch(aircraft, params, SHORT_OF_POWER / firmness, BY_PITCH, longitudinal_loops.AT_FULL_THROTTLE, FULL_THROTTLE_STARTS)
+
+
+def _by_pitch(
+    aircraft: AircraftLoops,
+    params: AirParams,
+    faster: float,
+    gains: Mapping[str, Limits],
+    opened: Mapping[str, str],
+    starts: Sequence[Mapping[str, Sequence[float]]],
+) -> Axis:
+    """Pitch holds the airspeed; faster: its error [m/s] that is worth a whole budget of the elevator."""
     air = _air(aircraft, params)
 
     def wanted(flow: SignalFlow) -> float:
         error = np.hypot(air.rms(flow, "airspeed", "uwq"), disturbed(flow, "airspeed", "pitch", *PITCH_OFF))
-        return _within(firmness * float(error) / FASTER, WAY * air.rms(flow, "servo_e", "uwq", rate=True) / PITCH_WAY)
+        return _within(float(error) / faster, WAY * air.rms(flow, "servo_e", "uwq", rate=True) / PITCH_WAY)
 
-    gains = {name: limits for name, limits in LONGITUDINAL.items() if name != "altitude_p"}
-    gains |= _inner("pitch", aircraft.delays.total("elevator"), params.pitch_ff, LONGITUDINAL)
-    return Axis(gains, longitudinal_loops.GLIDING, partial(longitudinal_loops.gliding_flow, OMEGA), wanted, LONGITUDINAL_STARTS)
+    return Axis(gains, opened, partial(longitudinal_loops.gliding_flow, OMEGA), wanted, starts)
 
 
 def _aside(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
@@ -180,7 +205,7 @@ def _above(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
 def final_axes(aircraft: AircraftLoops, params: AirParams, firmness: float) -> list[Axis]:
     """Near the ground, where comfort does not count: as stiff as the margins allow; pitch of a glider is as in cruise."""
     air, share = _air(aircraft, params), FINAL_SHARE * longer(params.trim_airspeed)
-    roll, pitch = axes(aircraft, params)
+    roll, pitch = axes(aircraft, params)[:2]
 
     def beside(flow: SignalFlow) -> float:
         error, way = _aside(air, flow)

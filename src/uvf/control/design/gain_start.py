@@ -64,5 +64,6 @@ def _first(aircraft: AircraftLoops, params: AirParams, softer: float) -> dict[st
         "climb_i": 0.2 / softer**2,
         "altitude_p": 0.5 / softer,
         "airspeed_p": 0.8 / softer,
+        "airspeed_pitch_p": 0.2 / softer,
         "power_pole": 0.5 / softer,
     }

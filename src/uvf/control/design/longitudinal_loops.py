@@ -18,6 +18,7 @@ INPUTS = ("gust_u", "gust_w", "gust_q")
 IN_AIR = {"u": ("u", "w"), "w": ("u", "w"), "q": ("u", "w", "q")}
 LOOPS = {"height": "pitch", "pitch": "elevator_asked", "airspeed": "throttle_asked"}
 GLIDING = {"airspeed": "pitch", "pitch": "elevator_asked"}
+AT_FULL_THROTTLE = {"airspeed by pitch": "pitch"}
 ON_FINAL = {"flare": "pitch", "flare pitch": "elevator_asked"}
 """Where each is opened."""
 
@@ -35,14 +36,15 @@ def longitudinal_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDe
 
 
 def gliding_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
-    """The closed loops of an aircraft without an engine: pitch holds the airspeed, and no height."""
+    """The closed loops without an engine, or with its throttle at a stop: pitch holds the airspeed, and no height."""
     flow = SignalFlow(omega, SIGNALS, INPUTS)
     flow.opens(*GLIDING.values())
     _inner(flow, flight, delays, params)
-    height = flight.airspeed / GRAVITY
+    made = -params.throttle_speed / max(params.throttle_climb, 1e-3) if params.throttle_climb else 0.0
+    exchanged = flight.airspeed / GRAVITY * params.airspeed_pitch_p
     flow.equal("h", {})  # what the density changes is slower than all else
-    _path(flow, flight, params, {"airspeed_felt": height * params.airspeed_p, "unexplained": 1.0})
-    _observer(flow, flight, params, {})
+    _path(flow, flight, params, {"airspeed_felt": made + exchanged, "unexplained": 1.0})
+    _observer(flow, flight, params, {"airspeed_felt": made})
     flow.equal("throttle_asked", {})
     flow.actuator("t", None, delays.throttle, delays.dead_time)
     return flow

@@ -69,6 +69,7 @@ class AirParams(FailsafeParams, frozen=True):
     climb_max: Annotated[float, _meta(0.5, 15, "m/s", "fastest climb")] = 4.0
     sink_max: Annotated[float, _meta(0.5, 15, "m/s", "fastest descent")] = 4.0
     airspeed_p: Annotated[float, _meta(0.05, 2, "1/s", "acceleration per error of airspeed")] = 0.8
+    airspeed_pitch_p: Annotated[float, _meta(0.02, 2, "1/s", "the same where pitch makes it, as the throttle is at its stop")] = 0.8
     power_pole: Annotated[float, _meta(0.05, 5, "rad/s", "how fast the power that throttle and trim do not explain is learnt")] = 0.9
     throttle_climb: Annotated[float, _meta(0, 0.5, "s/m", "throttle per climb rate; 0: it has no engine")] = 0.04
     idle_sink: Annotated[float, _meta(0.1, 20, "m/s", "sink at cruise airspeed when less throttle brakes no more")] = 5.0

@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from services.autopilot.air.modes.landing import TOUCH_SINK, LandingMode, flare, late
+from services.autopilot.air.modes.landing import EARLY, TOUCH_SINK, LandingMode, flare, late
 from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.commands import AttitudeSetpoint, Surfaces
@@ -131,15 +131,20 @@ def test_a_wind_along_the_lane_and_a_failsafe_do_not_wait():
     assert on_final(300.0, 24.0, params=params, wind_north=9.0, must_land=True)[0].circle is None
 
 
+def on_path(distance):
+    """Height [m] of the wheels: the path ends a little before the point to touch at."""
+    return flare(distance - EARLY * 19.0, 19.0, SLOPE)[0]
+
+
 def test_it_follows_the_slope():
-    landing, now = on_final(200.0, flare(200.0, 19.0, SLOPE)[0])
+    landing, now = on_final(200.0, on_path(200.0))
     track = landing.step(now, PARAMS, 0.02).asked
     assert track.climb == pytest.approx(-SLOPE * 19.0, abs=0.05)
     assert track.airspeed == PARAMS.min_airspeed
 
 
 def test_a_range_finder_corrects_the_height():
-    landing, now = on_final(100.0, flare(100.0, 19.0, SLOPE)[0], clearance=flare(100.0, 19.0, SLOPE)[0] + 1.0)
+    landing, now = on_final(100.0, on_path(100.0), clearance=on_path(100.0) + 1.0)
     for _ in range(300):
         track = landing.step(now, PARAMS, 0.02).asked
     assert track.climb == pytest.approx(-SLOPE * 19.0 - PARAMS.altitude_p, abs=0.02)
@@ -225,6 +230,18 @@ def test_over_the_strip_the_nose_is_not_lowered_below_that_of_touching():
     assert floor == pytest.approx(alpha - TOUCH_SINK / 19.0 - 0.04, abs=0.005)
     high, above = on_final(100.0, 8.0)
     assert high.step(above, PARAMS, 0.02).asked.lowest_pitch == -math.inf
+
+
+def test_the_headwind_that_is_lost_near_the_ground_is_made_up_for_before_it_is_gone():
+    def asked(height, wind_east):
+        landing, now = on_final(6.0, height, ground_speed=12.0, wind_east=wind_east)
+        return landing.step(now, PARAMS, 0.02).asked
+
+    calm, windy = (asked(0.6, wind) for wind in (0.0, -7.0))
+    assert windy.climb > calm.climb + 0.2
+    assert windy.airspeed - calm.airspeed == pytest.approx(min(0.4 * 7.0, 0.2 * PARAMS.min_airspeed) + 3.0, abs=1.5)
+    assert asked(0.6, 7.0).climb == calm.climb  # a wind from behind gives airspeed
+    assert asked(6.0, -7.0).climb == pytest.approx(asked(6.0, 0.0).climb, abs=0.1)
 
 
 def test_carried_on_beyond_the_point_it_sinks_faster():
