@@ -91,7 +91,7 @@ def slip(item: dict[str, Any], rigged: float, has_loop: bool) -> float:
     site = replace(site, members={PLANE: replace(member, file=msgspec.structs.replace(member.file, air=air))})
     lockstep = lockstep_of(site)
     with closing(lockstep):
-        probe = Probe(lockstep)
+        probe = Probe(lockstep, site)
         if not has_loop:
             probe.autopilot.params = msgspec.structs.replace(probe.autopilot.params, slip_i=0.0)
         seen: list[float] = []

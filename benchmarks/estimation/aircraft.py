@@ -94,7 +94,7 @@ def record(case: Case) -> Recorded:
     cycles: list[tuple[float, Sensed, float]] = []
     truth: list[tuple[float, ...]] = []
     with closing(lockstep):
-        probe = Probe(lockstep)
+        probe = Probe(lockstep, site)
         tap = Tap(probe.autopilot._sensing._estimator)
         probe.autopilot._sensing._estimator = tap
 

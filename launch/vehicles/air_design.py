@@ -14,7 +14,7 @@ from services.sim_air.analysis.linear import LinearModels, held_still, linearize
 from services.sim_air.engine.airframe import Airframe
 from uvf.control.design.aircraft_loops import OMEGA, AircraftLoops
 from uvf.control.design.flight_condition import ActuatorDelays, FlightCondition
-from uvf.control.design.lateral_loops import lateral_flow
+from uvf.control.design.lateral_loops import lateral_flow, rudder_of_roll
 from uvf.maths.atmosphere import RHO0, standard_density
 from uvf.models.vehicle.air import AirBody
 from uvf.models.vehicle.flight_params import AirParams
@@ -22,7 +22,6 @@ from uvf.models.yaml_data import BadInput
 
 ABOVE_SLOWEST = 1.05  # of the lowest airspeed, at which loops are looked at
 TURNING = (0.2, 5.0)  # rad/s, of a turn's beginning
-LEAST_DAMPING = 0.1  # 1/s, of rolls
 ROLL_SHARE = 0.6  # of the ailerons' way, for planned turns
 QUICKEST, LONGEST = 1.0, 10.0  # s, from level to the bank of a turn
 
@@ -36,10 +35,7 @@ class ModelledAircraft:
 
     def with_mix(self, params: AirParams) -> AirParams:
         """With the rudder that cancels what a steady roll yaws, by its ailerons and by its rate, to begin with."""
-        side = self.cruise.lateral
-        power, rolling = side.slope("r", "delta_r"), -side.slope("p", "delta_a") / min(side.slope("p", "p"), -LEAST_DAMPING)
-        mix = -(side.slope("r", "delta_a") + side.slope("r", "p") * rolling) / power if power else 0.0
-        return msgspec.structs.replace(params, rudder_mix=min(max(mix, -1.0), 1.0))
+        return msgspec.structs.replace(params, rudder_mix=rudder_of_roll(self.cruise))
 
 
 def modelled(airframe: Airframe, body: AirBody, params: AirParams) -> ModelledAircraft:

@@ -25,7 +25,6 @@ RATES = (120.0, 240.0, 480.0, 960.0, 1920.0)  # Hz; the first is JSBSim's own
 SPEEDS = (1.0, 1.1, 1.2, 0.85, 1.4, 0.7, 1.7, 2.0)  # of the first guess
 USEFUL = (0.1, 0.9)  # throttle of a cruise from which there is something left to both sides
 CLIMB = 0.02  # rad
-MOST_USES = 2
 ABOVE_STALL = 1.4  # times the speed at which the wing stalls: for turns, and for gusts
 TURNS = 200  # physics steps after which a surface stands
 TRAVEL = {"aileron": "left_aileron", "elevator": "elevator", "rudder": "rudder", "flap": "flap"}
@@ -160,12 +159,12 @@ def _with_rate(folder: Path, body: AirBody, notes: Notes) -> AirBody:
 
 
 def _with_speed(airframe: Airframe, body: AirBody, notes: Notes) -> AirBody:
-    """The first speed well above the stall at which it climbs and turns with some throttle left, else the first that comes near to it."""
+    """The first speed well above the stall at which it climbs and turns with some throttle left, else the best of the rest."""
     flown = list(_flights(airframe, body.trim_speed))
     if not flown:
         notes.add(f"guessed: trim_speed; no steady level flight was found from {min(SPEEDS):g} to {max(SPEEDS):g} times that")
         return body
-    speed, trim, _ = max(flown, key=lambda found: found.uses)
+    speed, trim, _ = max(flown, key=lambda found: found.clear)
     notes.add(f"found: steady flight at {speed:g} m/s with {trim.throttle:.2f} of the throttle, elevator {trim.elevator:.3f} rad")
     return msgspec.structs.replace(body, trim_speed=speed)
 
@@ -173,7 +172,7 @@ def _with_speed(airframe: Airframe, body: AirBody, notes: Notes) -> AirBody:
 class _Flight(NamedTuple):
     speed: float  # m/s
     trim: Trim
-    uses: int  # 2: for all that is flown; 1: near to the stall; 0: for level flight alone
+    clear: float  # times the speed at which it stalls, up to ABOVE_STALL; 0 where it does not climb and turn
 
 
 def _flights(airframe: Airframe, guess: float) -> Iterator[_Flight]:
@@ -185,16 +184,16 @@ def _flights(airframe: Airframe, guess: float) -> Iterator[_Flight]:
         except BadInput:
             continue
         cruises = not airframe.powered or USEFUL[0] < trim.throttle < USEFUL[1]
-        manoeuvres = cruises and _manoeuvres(airframe, speed)
-        yield _Flight(speed, trim, uses := manoeuvres + (manoeuvres and _is_clear_of_stall(airframe, speed)))
-        if uses == MOST_USES:
+        clear = _clear_of_stall(airframe, speed) if cruises and _manoeuvres(airframe, speed) else 0.0
+        yield _Flight(speed, trim, clear)
+        if clear == ABOVE_STALL:
             return
 
 
-def _is_clear_of_stall(airframe: Airframe, speed: float) -> bool:
+def _clear_of_stall(airframe: Airframe, speed: float) -> float:
     with held_still(airframe):
         _, stalled = stall(airframe, speed, HEIGHT)
-    return speed >= ABOVE_STALL * stalled
+    return min(speed / stalled, ABOVE_STALL)
 
 
 def _manoeuvres(airframe: Airframe, speed: float) -> bool:

@@ -30,7 +30,7 @@ SHARE = 0.7  # of the climb at full throttle
 DIVING, IDLE_SHARE = 1.15, 0.9  # of the trim speed, that a steep descent may take; of the sink with an idling engine there
 BANK, HOLDING = 0.7, 0.75  # tangent of the bank of a holding circle, and its largest share of that of a planned turn
 TURN_SHARE, LIFT_SHARE, POWER_SHARE = 0.6, 0.8, 0.5  # of the elevator's way from level flight to its stop, of the lift, of the throttle
-LEAST_BANK = 0.3  # rad
+LEAST_BANK, STEEPEST_BANK = 0.3, 1.2  # rad
 BANKS = 61  # that are tried
 MARGIN = 1.1  # of a speed over that at which the wing stalls
 HIGHEST_ALPHA = 0.25  # rad, where a model tells of no stall
@@ -150,12 +150,11 @@ def planned_bank(body: AirBody, found: Mapping[str, float]) -> float:
 
 
 def sustained_bank(found: Mapping[str, float], share: float) -> float:
-    """Bank [rad] of the level turn that a share of the throttle above cruise sustains; the usual limit without an engine."""
-    usual = AirParams().bank_limit
+    """Bank [rad] of the level turn that a share of the throttle above cruise sustains; the steepest of all without an engine."""
     if not found["throttle_climb"] or not found["throttle_load"]:
-        return usual
-    load = math.sqrt(1 + share * max(1 - found["trim_throttle"], 0.0) / found["throttle_load"])
-    return max(min(math.acos(1 / load), usual), LEAST_BANK)
+        return STEEPEST_BANK
+    load = math.sqrt(1 + share * (1 - found["trim_throttle"]) / found["throttle_load"])
+    return min(math.acos(1 / load), STEEPEST_BANK)
 
 
 def _crosswind(models: LinearModels, body: AirBody, airspeed: float) -> float:

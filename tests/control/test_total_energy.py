@@ -36,8 +36,10 @@ def test_a_climb_steeper_than_the_motor_can_do_keeps_the_airspeed_and_climbs_as_
     assert 3.0 < (heights(seen)[-1] - heights(seen)[1000]) / 40.0 < STEEP - 2.0
 
 
-def test_a_descent_steeper_than_a_glide_does_not_overspeed():
-    seen = fly(Point(height=600.0), cruise(height=100.0), 40.0, EAGER)
+@pytest.mark.parametrize("airspeed_pitch_p", [0.1, 0.8])
+def test_a_descent_steeper_than_a_glide_does_not_overspeed(airspeed_pitch_p):
+    eager = type(PARAMS)(**{**KEEN, "airspeed_pitch_p": airspeed_pitch_p})
+    seen = fly(Point(height=600.0), cruise(height=100.0), 40.0, eager)
     assert throttles(seen)[500:].max() < 0.5
     assert airspeeds(seen).max() < PARAMS.max_airspeed + 0.5
 
@@ -141,6 +143,13 @@ def test_the_airspeed_asked_for_rises_with_the_load_of_a_turn():
     assert asked(1.05) > 21.0
 
 
+def test_with_its_throttle_given_it_sinks_as_it_is_asked_to_while_it_is_not_too_fast():
+    loops = EnergyLoops()
+    sinking = AltitudeAirspeedSetpoint(0.0, None, -1.5, 21.0, throttle=0.6)
+    loops.step(Cycle(cruising(airspeed=20.0, climb=0.0), PARAMS, DT), sinking)
+    assert loops.lacking == pytest.approx(-1.5)
+
+
 def test_at_full_throttle_pitch_answers_an_airspeed_that_is_low_by_a_gain_of_its_own():
     """With that of the throttle an aircraft that cruises near full throttle would pitch with every gust."""
 
@@ -161,12 +170,13 @@ def test_levelling_out_of_a_steep_climbing_turn_leaves_no_more_climb_to_win_back
     heavy = type(PARAMS)(**{**KEEN, "alpha_max": 0.08, "min_airspeed": 22.8, "airspeed_p": 0.9, "throttle_load": 0.08})
     turn = AltitudeAirspeedSetpoint(1.0, 140.0, 3.0, 25.0)
 
-    def lacking(roll):
+    def lacking(airspeed, roll):
         loops = EnergyLoops()
-        loops.step(Cycle(cruising(airspeed=24.5, climb=0.0, roll=roll), heavy, DT), turn)
+        loops.step(Cycle(cruising(airspeed=airspeed, climb=0.0, roll=roll), heavy, DT), turn)
         return loops.lacking
 
-    assert [lacking(roll) for roll in (0.0, 0.2, 0.4)] == pytest.approx([lacking(0.5)] * 3, abs=0.01)
+    assert [lacking(24.5, roll) for roll in (0.0, 0.2, 0.4)] == pytest.approx([lacking(24.5, 0.5)] * 3, abs=0.01)
+    assert [lacking(25.5, roll) for roll in (0.0, 0.3, 0.6)] == pytest.approx([lacking(25.5, 0.65)] * 3, abs=0.01)
 
 
 def test_in_gusts_height_and_airspeed_are_held_and_the_throttle_does_not_chase_them():

@@ -103,7 +103,7 @@ class Probe:
         if now is None:
             return True
         east, north, _ = motion.position.tolist()
-        height = self._tangent.geodetic(motion.position)[2] - self._tangent.altitude  # over the plane it grows beyond some kilometres
+        height = self._tangent.geodetic(motion.position)[2] - self._tangent.altitude  # the tangent plane leaves the Earth's surface
         roll, _, _ = rotations.to_euler(motion.world_from_body)
         s, wind = self.craft.actuators.position, self.craft.wind
         piece, params = pilot.navigator._piece, self.autopilot.params

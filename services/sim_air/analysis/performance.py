@@ -93,13 +93,13 @@ def _sweep(airframe: Airframe, begin: Condition, elevator: Surface) -> Iterator[
 
 
 def stall(airframe: Airframe, airspeed: float, altitude: float) -> tuple[float, float]:
-    """Angle of attack [rad] of the largest lift, and the speed [m/s] at which that carries the weight.
+    """Angle of attack [rad] of the largest lift, and the speed [m/s] at which that carries the weight, inf without any.
 
     airspeed: at which the lift is measured [m/s]; altitude: [m AMSL]. The airframe is held still, motor off, surfaces at zero.
     """
     lifts = [_lift(airframe, airspeed, altitude, alpha) for alpha in STALL_ALPHAS]
     best = int(np.argmax(lifts))
-    return STALL_ALPHAS[best], airspeed * math.sqrt(GRAVITY / lifts[best])
+    return STALL_ALPHAS[best], airspeed * math.sqrt(GRAVITY / lifts[best]) if lifts[best] > 0 else math.inf
 
 
 def _lift(airframe: Airframe, airspeed: float, altitude: float, alpha: float) -> float:

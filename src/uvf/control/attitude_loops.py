@@ -91,7 +91,7 @@ class AttitudeLoops:
         return self._roll.step(moving, cycle.scale, params.roll_i * error, cycle.dt)
 
     def _rudder(self, cycle: Cycle, aileron: float, given: float | None) -> float:
-        """Holds the rate of a coordinated turn, damps what differs from it, and goes with the aileron against its adverse yaw.
+        """Holds the rate of a coordinated turn, damps what differs from it, and goes with the aileron against the yaw of a roll.
 
         Takes out slowly the side force of slipping, unless a rudder is given: what is felt less the force of the rudder itself, which is
         the larger one of a slender aircraft, and of the other sign.

@@ -31,7 +31,7 @@ class PathLaw(Protocol):
     """Outer control law: from height or climb rate, and airspeed, to pitch and throttle."""
 
     lacking: float
-    """Climb rate [m/s] that the last cycle asked for beyond the present one, as far as it can be made; a law may always say 0."""
+    """Climb rate [m/s] that the last cycle asked for beyond the present one, as far as the turn can have it; a law may always say 0."""
 
     def begin(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, pitch: float, throttle: float) -> None:
         """Sets the integrators so that the first step asks for ``pitch`` [rad] and ``throttle`` [0..1]: a bumpless transfer."""

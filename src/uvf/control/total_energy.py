@@ -20,7 +20,7 @@ from uvf.maths.filters import Integral
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
-CLIMB_TRIM_LIMIT = 0.35  # rad, of the integrator on pitch: what an updraught lifts the path, at the lowest airspeed, too
+CLIMB_TRIM_LIMIT = 0.35  # rad, of the integrator on pitch: as much as an updraught tilts the path, even at the lowest airspeed
 ACCELERATION_LIMIT = 2.0  # m/s^2 asked for
 TOO_SLOW = 0.95  # of the slowest airspeed asked for: no climb and full throttle
 LEAST_SLOPE = 1e-3  # s/m, of throttle per climb
@@ -50,7 +50,7 @@ class Power:
     climb: float
     faster: float  # V V' / g
     reached: float  # the climb, as far as throttle can make both
-    in_turn: float  # the same in the turn that is asked for: what its bank makes room for
+    in_turn: float  # the same in the turn that is asked for: its bank gives way for no more than this
 
 
 class EnergyLoops:
@@ -93,15 +93,18 @@ class EnergyLoops:
         With a given throttle the path is not given up for airspeed: it is closed to land, and then airspeed is what has to go.
         """
         params = cycle.params
-        faster = _acceleration(cycle, self._airspeed(cycle, wanted))
+        faster = _acceleration(cycle, self._airspeed(cycle, wanted) - cycle.now.airspeed, params.airspeed_p)
         higher = 0.0 if wanted.height is None else wanted.height - cycle.now.height
         climb = min(max(wanted.climb + params.altitude_p * higher, -params.sink_max), params.climb_max * _room(cycle))
         full, airspeed = made(cycle, 1.0) + self._power.unexplained, self._airspeed(cycle, wanted)
         most = full - _exchanged(cycle, airspeed - _lent(cycle, wanted, cycle.slowest))
         turn = max(cycle.load, 1 / math.cos(min(abs(wanted.bank), cycle.bank_with(0.0), FULL_BANK)))
-        drag = params.throttle_load * (turn**2 - cycle.load**2) / _slope(cycle)
-        in_turn = full - drag - _exchanged(cycle, airspeed - _lent(cycle, wanted, cycle.slowest_with(turn)))
-        least = made(cycle, wanted.throttle or 0.0) + self._power.unexplained - _exchanged(cycle, params.max_airspeed)
+        drag = params.throttle_load * (turn**2 - cycle.load**2) / _slope(cycle) if params.throttle_climb else 0.0
+        slowest = min(cycle.slowest_with(turn), params.max_airspeed)
+        in_turn = full - drag - _exchanged(cycle, max(airspeed, slowest) - _lent(cycle, wanted, slowest))
+        spare = params.max_airspeed - cycle.now.airspeed
+        least = made(cycle, wanted.throttle or 0.0) + self._power.unexplained
+        least -= _acceleration(cycle, spare, params.airspeed_pitch_p if spare > 0 else params.airspeed_p)
         reached = min(max(climb, least), most)
         return Power(climb, faster, reached, max(min(reached, in_turn), min(reached, 0.0)))
 
@@ -116,14 +119,14 @@ class EnergyLoops:
         return min(max(wanted.airspeed, cycle.slowest), cycle.params.max_airspeed)
 
 
-def _acceleration(cycle: Cycle, airspeed: float) -> float:
-    """m/s, the power V V' / g towards this airspeed [m/s], as the throttle makes it."""
-    return cycle.speed / GRAVITY * clip(cycle.params.airspeed_p * (airspeed - cycle.now.airspeed), ACCELERATION_LIMIT)
+def _acceleration(cycle: Cycle, error: float, gain: float) -> float:
+    """m/s, the power V V' / g that takes out this error of airspeed [m/s]; gain: [1/s]."""
+    return cycle.speed / GRAVITY * clip(gain * error, ACCELERATION_LIMIT)
 
 
 def _exchanged(cycle: Cycle, airspeed: float) -> float:
-    """m/s of climb that goes into this airspeed [m/s], where only pitch can make it: slowly, for pitch must not follow the gusts."""
-    return cycle.speed / GRAVITY * clip(cycle.params.airspeed_pitch_p * (airspeed - cycle.now.airspeed), ACCELERATION_LIMIT)
+    """m/s of climb that goes into this airspeed [m/s] where only pitch can make it: slowly, for pitch must not follow the gusts."""
+    return _acceleration(cycle, airspeed - cycle.now.airspeed, cycle.params.airspeed_pitch_p)
 
 
 def _lent(cycle: Cycle, wanted: AltitudeAirspeedSetpoint, slowest: float) -> float:

@@ -1,16 +1,22 @@
-"""How steeply turns are planned: by what the elevator holds and the wing carries."""
+"""How turns are planned and begun: by what the elevator holds, the wing carries and the engine sustains, with the rudder of a roll."""
 
 import math
 from dataclasses import replace
 
 import msgspec
+import numpy as np
 import pytest
 
-from launch.vehicles.aircraft_rules import SEA_LEVEL
-from launch.vehicles.aircraft_trial import level
-from launch.vehicles.autopilot_guess import planned_bank, sustained_bank
+from launch.vehicles.aircraft_rules import HEIGHT, SEA_LEVEL
+from launch.vehicles.aircraft_trial import ABOVE_STALL, _clear_of_stall, level
+from launch.vehicles.autopilot_guess import STEEPEST_BANK, planned_bank, sustained_bank
+from services.sim_air.analysis.linear import held_still
+from services.sim_air.analysis.performance import stall
 from services.sim_air.engine.airframe import Airframe
+from uvf.control.design.flight_condition import FlightCondition
+from uvf.control.design.lateral_loops import rudder_of_roll
 from uvf.maths.geodesy import GRAVITY
+from uvf.maths.state_space import StateSpace
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.flight_params import AirParams
@@ -65,5 +71,24 @@ def test_with_little_throttle_to_spare_turns_are_flatter_and_the_bank_is_limited
     full = sustained_bank(weak, 1.0)
     assert 0.0821 * (1 / math.cos(full) ** 2 - 1) == pytest.approx(1 - 0.855)
     assert 0.6 < planned_bank(stick25(0.436), weak) < full - 0.1
-    assert sustained_bank(FIGURES, 1.0) == AirParams().bank_limit
-    assert sustained_bank(weak | {"throttle_climb": 0.0}, 1.0) == AirParams().bank_limit  # a glider has another way to pay
+    assert sustained_bank(FIGURES, 1.0) == STEEPEST_BANK
+    assert sustained_bank(weak | {"throttle_climb": 0.0}, 1.0) == STEEPEST_BANK  # a glider pays by its height
+
+
+def test_the_rudder_goes_with_the_ailerons_so_that_a_steady_roll_does_not_yaw():
+    """As of a glider: its ailerons yaw it a little with the roll, the rate of the roll much more against it."""
+    a, b = np.zeros((5, 5)), np.zeros((5, 2))
+    a[1, 1], a[2, 1], b[1, 0], b[2] = -7.07, -1.26, 13.8, (0.84, -2.47)
+    side = StateSpace(a, b, ("v", "p", "r", "phi", "psi"), ("delta_a", "delta_r"))
+    flight = FlightCondition(26.0, 26.0, 0.05, side, side, 26.0, 12.0)
+    rolling = 13.8 / 7.07  # rad/s per rad of aileron
+    assert 0.84 - 1.26 * rolling - 2.47 * rudder_of_roll(flight) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_speed_is_looked_for_that_is_clear_of_the_stall():
+    airframe = Airframe(ROOT / "vehicles" / "stick25", load_vehicle(ROOT / "vehicles", "stick25").air, SEA_LEVEL)
+    with held_still(airframe):
+        _, stalled = stall(airframe, 17.0, HEIGHT)
+    assert 6.0 < stalled < 8.0
+    assert _clear_of_stall(airframe, 1.2 * stalled) == pytest.approx(1.2, abs=0.01)
+    assert _clear_of_stall(airframe, 17.0) == ABOVE_STALL

@@ -175,9 +175,10 @@ def mission_of(model, speed, folder):
 def flown(request, figures, tmp_path_factory):
     root = tmp_path_factory.mktemp(request.param)
     speed = tune_speed(tuned_by_files_alone(request.param, root))
-    lockstep = bench.lockstep_of(load_scenario(mission_of(request.param, speed, root), root))
+    site = load_scenario(mission_of(request.param, speed, root), root)
+    lockstep = bench.lockstep_of(site)
     with closing(lockstep):
-        probe = Probe(lockstep)
+        probe = Probe(lockstep, site)
         lockstep.run(120.0, probe)
         assert probe.autopilot._mode_manager.navigator.finished
     return probe.flight(), speed

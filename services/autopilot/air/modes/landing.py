@@ -1,7 +1,7 @@
 """Landing: down a circle, along the glide slope into the wind, flare, decrab, roll-out; or round again.
 
 Heights are those of the wheels over the strip. The path of the flare is laid over the ground: from the slope a parabola leads to the
-sink rate of touching down right where the wheels are meant to touch, whatever the wind.
+sink rate of touching down a little before where the wheels are meant to touch, whatever the wind.
 """
 
 import math
@@ -35,13 +35,12 @@ ALIGNED = 0.3  # rad, of the course on leaving the circle
 GUST_SHARE, GUST_MOST = 0.4, 0.2  # of the wind, of min_airspeed: what is added to it on the approach
 COMMITTED = 12.0  # m: below it, without satellites, it is landed by dead reckoning
 GATE = 10.0, 2.0  # m of height, between which the approach has to be a stable one
-ROUGHNESS, SHEAR_AHEAD = 0.046, 0.5  # m, of a strip (MIL-F-8785C); s, in which pitch and throttle answer to what the wind will have lost
+ROUGHNESS = 0.046  # m, of a strip (MIL-F-8785C)
+SHEAR_AHEAD = 0.5  # s, in which pitch and throttle make up for airspeed that is lost
 TOO_HIGH, TOO_FAST = 3.0, 7.0  # m, m/s
 FLARE_TIME = 3.0  # s
-LEAD, EARLY = (
-    0.5,
-    0.4,
-)  # s, by which the sink asked for is ahead of the path, for the climb follows later; and the path of the point to touch at
+LEAD = 0.5  # s, by which the sink asked for is ahead of the path: the climb follows that much later
+EARLY = 0.4  # s, by which the path ends before the point to touch at: lifted by gusts it floats on
 TOUCH_SINK = 0.4  # m/s
 TOUCH_SPEED, SLOWS_BELOW = 0.96, 3.0  # of min_airspeed; m
 DECRAB_BELOW = 0.7  # m
@@ -204,11 +203,11 @@ class LandingMode(FlightPhase):
             if self._senses.clearance is None and wheels.height < FEELS_BELOW:
                 climb = min(climb, -TOUCH_SINK)
         climb += now.climb - wheels.climb  # as the estimate has it
-        raised = climb + higher_by(now, lost, params)
         if flares and self._has_touched(now, climb, dt):
             self._gyros, self._touched_at = Gyros(now), max(now.pitch, nose_up(now, params))
             wheels.touched(now, params)
             self._to(LandingStage.ROLL)
+        raised = climb + higher_by(now, lost, params)  # of flaps and throttle, too: by pitch alone it overshoots, and balloons
         lift = self._lift(now, raised) if wheels.height < LIFTS_BELOW else 0.0
         return Setpoint(self._down(now, params, distance, raised, fast + lost), params.land_flap, lift=lift, firm=True)
 
@@ -228,11 +227,13 @@ class LandingMode(FlightPhase):
         return LIFT_P * (climb - now.climb) + LIFT_A * (GRAVITY - self._senses.specific_force_up)
 
     def _shear(self, now: Estimate, params: AirParams) -> float:
-        """m/s of headwind that it will have sunk out of before pitch and throttle have answered."""
+        """m/s of headwind that it will have sunk out of before pitch and throttle have answered, no more than gusts are allowed for."""
         height = max(self._wheels.height, 0.0) + params.gear_height
         below = max(height - max(-now.climb, TOUCH_SINK) * SHEAR_AHEAD, params.gear_height)
         here, there = (logarithmic(h, ROUGHNESS, GROUND_WIND) for h in (height, below))
-        return max(-self.lane.tailwind(now), 0.0) * (1 - there / here)
+        if here <= 0:
+            return 0.0
+        return min(max(-self.lane.tailwind(now), 0.0) * (1 - there / here), GUST_MOST * params.min_airspeed)
 
     def _airspeed(self, now: Estimate, params: AirParams) -> float:
         wind = math.hypot(now.wind_north, now.wind_east)
@@ -319,10 +320,10 @@ def nose_up(now: Estimate, params: AirParams, faster: float = 0.0) -> float:
 
 
 def higher_by(now: Estimate, lost: float, params: AirParams) -> float:
-    """Climb rate [m/s] to ask for beyond what is wanted, so that pitch makes up for the lift that goes with ``lost`` airspeed [m/s]."""
+    """Climb rate [m/s] besides, by which pitch makes up for the lift that goes with ``lost`` airspeed [m/s], on final."""
     cycle = Cycle(now, params, 0.0)
     slower = max(1 - lost / cycle.speed, 0.5)
-    return params.alpha_per_load * GRAVITY / cycle.eas**2 * (slower**-2 - 1) * cycle.speed / (1 + params.climb_p)
+    return params.alpha_per_load * GRAVITY / cycle.eas**2 * (slower**-2 - 1) * cycle.speed / (1 + params.final_climb_p)
 
 
 def touch_throttle(now: Estimate, params: AirParams, climb: float, airspeed: float, height: float) -> float:

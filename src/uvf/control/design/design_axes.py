@@ -24,7 +24,7 @@ TURBULENCE, HEIGHT = "moderate", 100.0  # m
 BANK_OFF, SLOW_BANK_OFF, PITCH_OFF = (0.05, 1.0), (0.025, 20.0), (0.01, 5.0)
 """rad and s: disturbances that come on bank and pitch, and how long they last. A bank that is off as long as a turn is what a circle meets:
 its feed-forward is not that of this aircraft."""
-MIX = 0.5  # the least share of the rudder that a roll takes: to gusts alone none of it would be best
+MIX = 0.25  # least share of the rudder that a steady roll needs; for gusts alone the search would take none
 LATERAL = {
     "roll_time": (0.1, 2.0),
     "roll_p": (1e-4, 2.0),
@@ -52,7 +52,7 @@ FINAL_LONGITUDINAL = ("climb_p", "pitch_time", "pitch_p", "pitch_i")
 FLARE = {"flare_p": (0.2, 2.5)}
 FINAL = (*(f"final_{name}" for name in (*FINAL_LATERAL, *FINAL_LONGITUDINAL)), *FLARE)
 """Gains that are searched for, within these limits in their own units."""
-LATERAL_STARTS = ({"yaw_damping": (1.0, 4.0)}, {"rudder_mix": (1.0, MIX)}, {"course_p": (1.0, 0.4), "k_path": (1.0, 0.4)})
+LATERAL_STARTS = ({"yaw_damping": (1.0, 4.0)}, {"rudder_mix": (1.0, 0.5, MIX)}, {"course_p": (1.0, 0.4), "k_path": (1.0, 0.4)})
 FULL_THROTTLE_STARTS = ({"airspeed_pitch_p": (1.0, 0.3)},)
 LONGITUDINAL_STARTS = ({"pitch_p": (1.0, 3.0)}, {"pitch_i": (1.0, 0.3)}, {"climb_p": (1.0, 0.4)}, {"altitude_p": (1.0, 0.4)})
 """Factors of the gains of a rule of thumb, of which the best are begun with: aircraft differ most in these."""
@@ -144,8 +144,8 @@ def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
 
     gains = LATERAL | _inner("roll", aircraft.delays.total("aileron"), params.roll_ff, LATERAL)
     gains["k_path"] = STEEP / (params.trim_airspeed * params.chi_inf * 2 / np.pi), LATERAL["k_path"][1]
-    if params.rudder_mix:
-        gains["rudder_mix"] = (MIX * abs(params.rudder_mix), abs(params.rudder_mix))
+    if mix := abs(lateral_loops.rudder_of_roll(_cruise(aircraft, params))):
+        gains["rudder_mix"] = (MIX * mix, mix)
     return Axis(gains, lateral_loops.LOOPS, partial(lateral_loops.lateral_flow, OMEGA), wanted, LATERAL_STARTS)
 
 

@@ -14,6 +14,7 @@ SIGNALS = (
     *("servo_a", "servo_r", "delta_a", "delta_r"),
 )
 INPUTS = ("gust_v", "gust_p", "gust_r")
+LEAST_DAMPING = 0.1  # 1/s, of rolls
 IN_AIR = {"v": ("v",), "p": ("v", "p", "r"), "r": ("v", "p", "r")}
 LOOPS = {"path": "bank", "roll": "aileron_asked", "yaw": "rudder_asked"}
 ON_FINAL = {"final path": "bank", "final roll": "aileron_asked"}
@@ -68,6 +69,14 @@ def _yaw(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
     turning = GRAVITY / flight.airspeed  # rad/s per rad of bank
     damped = {"r_felt": scale * params.yaw_damping, "phi": -scale * params.yaw_damping * turning, "slip_trim": scale}
     flow.equal("rudder_asked", damped | {"aileron_asked": params.rudder_mix})
+
+
+def rudder_of_roll(flight: FlightCondition) -> float:
+    """Rudder per aileron, within +-1, of a steady roll that does not yaw: against what the ailerons and the rate of the roll yaw."""
+    side = flight.lateral
+    power, rolling = side.slope("r", "delta_r"), -side.slope("p", "delta_a") / min(side.slope("p", "p"), -LEAST_DAMPING)
+    mix = -(side.slope("r", "delta_a") + side.slope("r", "p") * rolling) / power if power else 0.0
+    return min(max(mix, -1.0), 1.0)
 
 
 def _scale(flight: FlightCondition, params: AirParams) -> float:

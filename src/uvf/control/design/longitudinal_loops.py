@@ -36,11 +36,11 @@ def longitudinal_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDe
 
 
 def gliding_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
-    """The closed loops without an engine, or with its throttle at a stop: pitch holds the airspeed, and no height."""
+    """The closed loops without an engine, or at full throttle: pitch holds the airspeed, and no height."""
     flow = SignalFlow(omega, SIGNALS, INPUTS)
     flow.opens(*GLIDING.values())
     _inner(flow, flight, delays, params)
-    made = -params.throttle_speed / max(params.throttle_climb, 1e-3) if params.throttle_climb else 0.0
+    made = -params.throttle_speed / params.throttle_climb if params.throttle_climb else 0.0
     exchanged = flight.airspeed / GRAVITY * params.airspeed_pitch_p
     flow.equal("h", {})  # what the density changes is slower than all else
     _path(flow, flight, params, {"airspeed_felt": made + exchanged, "unexplained": 1.0})

@@ -8,12 +8,14 @@ import msgspec
 import numpy as np
 import pytest
 
-from services.autopilot.air.modes.landing import EARLY, TOUCH_SINK, LandingMode, flare, late
+from services.autopilot.air.modes.landing import EARLY, LIFT_A, LIFT_P, TOUCH_SINK, LandingMode, flare, late
 from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.commands import AttitudeSetpoint, Surfaces
 from uvf.guidance.route import Place
 from uvf.guidance.runways import LandingStrip, lane_for
+from uvf.maths.atmosphere import logarithmic
+from uvf.maths.geodesy import GRAVITY
 
 STRIP = LandingStrip(Place(0.0, 0.0, 5.0), math.pi / 2, 300.0, 12.0)  # east and west
 SLOPE = math.tan(PARAMS.glide_slope)
@@ -233,15 +235,30 @@ def test_over_the_strip_the_nose_is_not_lowered_below_that_of_touching():
 
 
 def test_the_headwind_that_is_lost_near_the_ground_is_made_up_for_before_it_is_gone():
-    def asked(height, wind_east):
-        landing, now = on_final(6.0, height, ground_speed=12.0, wind_east=wind_east)
-        return landing.step(now, PARAMS, 0.02).asked
+    def asked(height, wind_east, params=PARAMS):
+        landing, now = on_final(6.0, height, ground_speed=12.0, wind_east=wind_east, params=params)
+        return landing.step(now, params, 0.02).asked
 
-    calm, windy = (asked(0.6, wind) for wind in (0.0, -7.0))
-    assert windy.climb > calm.climb + 0.2
-    assert windy.airspeed - calm.airspeed == pytest.approx(min(0.4 * 7.0, 0.2 * PARAMS.min_airspeed) + 3.0, abs=1.5)
-    assert asked(0.6, 7.0).climb == calm.climb  # a wind from behind gives airspeed
-    assert asked(6.0, -7.0).climb == pytest.approx(asked(6.0, 0.0).climb, abs=0.1)
+    calm, windy = (asked(0.6, wind) for wind in (0.0, -5.0))
+    here, there = (logarithmic(height + PARAMS.gear_height, 0.046, 10.0) for height in (0.6, 0.6 - 0.5 * TOUCH_SINK))
+    lost = 5.0 * (1 - there / here)  # half a second later, sinking as it is meant to
+    assert windy.airspeed == pytest.approx(calm.airspeed + 0.4 * 5.0 + lost)
+    lift = PARAMS.alpha_per_load * GRAVITY / 19.0**2 * ((1 - lost / 19.0) ** -2 - 1)  # rad
+    assert (windy.climb - calm.climb) * (1 + PARAMS.final_climb_p) / 19.0 == pytest.approx(lift, rel=0.15)
+    assert asked(0.6, 5.0).climb == calm.climb  # a wind from behind gives airspeed
+    no_gear = replace_params(gear_height=0.0)
+    assert asked(-0.4, -5.0, no_gear).climb == asked(-0.4, 0.0, no_gear).climb  # on the ground there is no more to lose
+
+
+def test_flaps_answer_the_lift_that_a_gust_takes_at_once_and_a_climb_that_is_wanting():
+    def lift(specific_force_up, climb=0.0):
+        context = FlightContext(specific_force_up=specific_force_up)
+        landing, now = on_final(10.0, on_path(10.0), climb=climb)
+        landing._senses = context
+        return landing.step(now, PARAMS, 0.02).lift
+
+    assert lift(GRAVITY - 0.5) == pytest.approx(lift(GRAVITY) + LIFT_A * 0.5)
+    assert lift(GRAVITY, climb=-1.0) == pytest.approx(lift(GRAVITY) + LIFT_P * 1.0, abs=0.2)
 
 
 def test_carried_on_beyond_the_point_it_sinks_faster():
