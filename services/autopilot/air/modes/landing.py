@@ -313,10 +313,12 @@ def late(distance: float) -> float:
 def nose_up(now: Estimate, params: AirParams, faster: float = 0.0) -> float:
     """Pitch [rad] below which the nose is not lowered over the strip, so that no wheel in front of the main ones touches first.
 
-    It is that of a little more sink than when it touches, and of as much more as is asked for: ``faster`` [m/s].
+    It is that of a little more sink than when it touches, and of as much more as is asked for: ``faster`` [m/s]. A tail wheel leaves the
+    propeller little room: with one it is level at least (CS 23.925 has a clearance in the level attitude).
     """
     cycle = Cycle(now, params, 0.0)
-    return cycle.alpha_with(1.0) - params.flap_alpha * params.land_flap - (TOUCH_SINK + faster) / cycle.speed - NOSE_GIVES
+    lowest = cycle.alpha_with(1.0) - params.flap_alpha * params.land_flap - (TOUCH_SINK + faster) / cycle.speed - NOSE_GIVES
+    return max(lowest, 0.0) if params.gear == "tail_wheel" else lowest
 
 
 def higher_by(now: Estimate, lost: float, params: AirParams) -> float:

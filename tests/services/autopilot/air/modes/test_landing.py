@@ -234,6 +234,14 @@ def test_over_the_strip_the_nose_is_not_lowered_below_that_of_touching():
     assert high.step(above, PARAMS, 0.02).asked.lowest_pitch == -math.inf
 
 
+def test_a_tail_dragger_that_is_fast_touches_with_its_nose_level_for_the_propellers_sake():
+    def lowest(gear):
+        landing, now = on_final(3.0, 0.3, airspeed=28.0, params=replace_params(gear=gear))
+        return landing.step(now, replace_params(gear=gear), 0.02).asked.lowest_pitch
+
+    assert lowest("nose_wheel") < 0.0 == lowest("tail_wheel")
+
+
 def test_the_headwind_that_is_lost_near_the_ground_is_made_up_for_before_it_is_gone():
     def asked(height, wind_east, params=PARAMS):
         landing, now = on_final(6.0, height, ground_speed=12.0, wind_east=wind_east, params=params)
