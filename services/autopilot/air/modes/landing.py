@@ -40,7 +40,7 @@ SHEAR_AHEAD = 0.5  # s, in which pitch and throttle make up for airspeed that is
 TOO_HIGH, TOO_FAST = 3.0, 7.0  # m, m/s
 FLARE_TIME = 3.0  # s
 LEAD = 0.5  # s, by which the sink asked for is ahead of the path: the climb follows that much later
-EARLY = 0.4  # s, by which the path ends before the point to touch at: lifted by gusts it floats on
+EARLY, GUSTY = 0.4, 8.0  # s, by which the path ends before the point to touch at in that much wind [m/s]: lifted by gusts it floats on
 TOUCH_SINK = 0.4  # m/s
 TOUCH_SPEED, SLOWS_BELOW = 0.96, 3.0  # of min_airspeed; m
 DECRAB_BELOW = 0.7  # m
@@ -191,7 +191,7 @@ class LandingMode(FlightPhase):
         wheels = self._wheels
         wheels.step(now, self._senses.clearance, distance, params, dt)
         self._low = wheels.height < COMMITTED
-        ahead = distance - EARLY * now.ground_speed
+        ahead = distance - EARLY * min(math.hypot(now.wind_north, now.wind_east) / GUSTY, 1.0) * now.ground_speed
         wanted, _, flares = self._path(ahead, now.ground_speed, params)
         _, slope, _ = self._path(ahead - LEAD * now.ground_speed, now.ground_speed, params)
         fast, lost = self._airspeed(now, params), self._shear(now, params) if flares else 0.0

@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from services.autopilot.air.modes.landing import EARLY, LIFT_A, LIFT_P, TOUCH_SINK, LandingMode, flare, late
+from services.autopilot.air.modes.landing import EARLY, GUSTY, LIFT_A, LIFT_P, TOUCH_SINK, LandingMode, flare, late
 from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.commands import AttitudeSetpoint, Surfaces
@@ -134,8 +134,13 @@ def test_a_wind_along_the_lane_and_a_failsafe_do_not_wait():
 
 
 def on_path(distance):
-    """Height [m] of the wheels: the path ends a little before the point to touch at."""
-    return flare(distance - EARLY * 19.0, 19.0, SLOPE)[0]
+    """Height [m] of the wheels in still air."""
+    return flare(distance, 19.0, SLOPE)[0]
+
+
+def test_in_gusty_wind_the_path_ends_before_the_point_to_touch_at():
+    landing, now = on_final(200.0, on_path(200.0 - EARLY * 19.0), wind_north=GUSTY)
+    assert landing.step(now, PARAMS, 0.02).asked.climb == pytest.approx(-SLOPE * 19.0, abs=0.05)
 
 
 def test_it_follows_the_slope():
