@@ -16,6 +16,7 @@ from uvf.control.design.aircraft_loops import OMEGA, AircraftLoops
 from uvf.control.design.flight_condition import ActuatorDelays, FlightCondition
 from uvf.control.design.lateral_loops import lateral_flow, rudder_of_roll
 from uvf.maths.atmosphere import RHO0, standard_density
+from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.air import AirBody
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.yaml_data import BadInput
@@ -54,15 +55,16 @@ def modelled(airframe: Airframe, body: AirBody, params: AirParams) -> ModelledAi
 def timing(aircraft: ModelledAircraft, params: AirParams, limit: float) -> dict[str, float]:
     """How turns are planned and banked for; limit: of the ailerons [rad].
 
-    ``lead_time`` and ``bank_time`` invert the roll loop, (1 + bank_time s) exp(lead_time s), as well as they can where turns begin;
+    ``lead_time`` and ``bank_time`` invert how the turn of the path follows the bank asked for, (1 + bank_time s) exp(lead_time s), as
+    well as they can where turns begin: later than the bank, where the aircraft slips first;
     ``roll_in`` is the time in which a share of the ailerons reaches the bank of a turn against inertia and damping.
     """
     flow = lateral_flow(OMEGA, aircraft.cruise, aircraft.loops.delays, params)
-    rolls = flow.closed("phi", "bank") / flow.closed("bank", "bank")
+    turns = flow.closed("off", "bank") / flow.closed("bank", "bank") * flow.s * aircraft.cruise.ground_speed / GRAVITY
     k = (TURNING[0] < OMEGA) & (TURNING[1] > OMEGA)
 
     def missed(x: np.ndarray) -> float:
-        inverted = rolls[k] * (1 + abs(x[0]) * flow.s[k]) * np.exp(abs(x[1]) * flow.s[k])
+        inverted = turns[k] * (1 + abs(x[0]) * flow.s[k]) * np.exp(abs(x[1]) * flow.s[k])
         return float(np.sum(np.abs(1 - inverted) ** 2 / OMEGA[k]))
 
     bank_time, lead_time = np.abs(minimize(missed, (params.roll_time, 0.1), method="Nelder-Mead").x).tolist()

@@ -14,7 +14,7 @@ from services.sim_air.analysis.linear import LinearModels, held_still, linearize
 from services.sim_air.analysis.performance import climb_rate, glides, stall
 from services.sim_air.engine.airframe import Airframe
 from services.sim_air.engine.states import Held
-from services.sim_air.engine.trim import Trim
+from services.sim_air.engine.trim import Trim, attitude
 from services.sim_air.engine.wiring import Controls
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.rotations import Floats
@@ -80,8 +80,9 @@ def _pulling(airframe: Airframe, speed: float) -> float:
 
 
 def _balance(airframe: Airframe, speed: float) -> dict[str, float]:
-    """Lift, elevator and throttle from four steady flights: cruise, at another speed, climbing, turning."""
-    cruise, climbing = airframe.start(level(speed)), airframe.start(level(speed, CLIMB))
+    """Lift, surfaces and throttle from four steady flights: cruise, at another speed, climbing, turning."""
+    cruise, climbing, turn = (airframe.start(start) for start in (level(speed), level(speed, CLIMB), turning(speed)))
+    yawing = attitude(turning(speed).path, turn).rates[2]
     factor, other = _other(airframe, speed)
     per_load = (cruise.alpha - other.alpha) / (GRAVITY * (1 - factor**-2)) * speed**2
     per_alpha = (cruise.elevator - other.elevator) / (cruise.alpha - other.alpha)
@@ -93,7 +94,9 @@ def _balance(airframe: Airframe, speed: float) -> dict[str, float]:
         "elev_zero_alpha": _within(cruise.elevator - per_alpha * cruise.alpha, -0.5, 0.5),
         "elev_per_alpha": _within(per_alpha, -10.0, 0.0),
         "throttle_speed": _within((other.throttle - cruise.throttle) / ((factor - 1) * speed), 0.0, 0.2),
-        "throttle_load": _within(airframe.start(turning(speed)).throttle - cruise.throttle, 0.0, 0.5),
+        "throttle_load": _within(turn.throttle - cruise.throttle, 0.0, 0.5),
+        "aileron_turn": _within((turn.aileron - cruise.aileron) / yawing, -2.0, 2.0),
+        "rudder_turn": _within((turn.rudder - cruise.rudder) / yawing, -2.0, 2.0),
         "throttle_climb": _within((climbing.throttle - cruise.throttle) / (speed * np.sin(CLIMB)), least_slope, 0.5),
     }
 
@@ -190,7 +193,8 @@ def _rates(models: LinearModels, body: AirBody) -> dict[str, float]:
         damping, power = abs(side.slope(rate, rate)), abs(side.slope(rate, surface))
         if power < 1e-6 * damping:
             why = f"{body.model}: nothing that the autopilot moves makes it {axis}"
-            raise BadInput(f"{why}: these figures are an aeroplane's, which banks; those of an airship are set by hand, with law: airship")
+            how = "it banks by ailerons, and cannot fly an aeroplane that turns by its rudder alone"
+            raise BadInput(f"{why}: {how}; the figures of an airship are set by hand, with law: airship")
         found[f"{axis}_ff"] = _within(damping / power, 0.0, 2.0)
     return found
 

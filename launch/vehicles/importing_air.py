@@ -38,12 +38,14 @@ LIGHT = 50.0  # kg, below which an aircraft has servos of models
 MOTOR_LAG = 0.1  # s
 SERVOS = {True: (6.0, 0.05), False: (1.0, 0.05)}  # rad/s, s
 UNBURNT = {FUEL_FREEZE: 1.0}  # models come with fuel for minutes, or for a day
+ALTIMETER = {"mount": {"rpy": [0.0, 1.5708, 0.0]}, "hz": 20.0, "range_min": 0.05, "range_max": 50.0, "noise": 0.03, "frame": "altimeter"}
 SENSORS = {
     "imu": {
         **{"mount": {}, "hz": 100.0, "gyro_noise": 0.0023, "gyro_bias": 0.002},
         **{"accel_noise": 0.025, "accel_bias": 0.03, "mag_noise": 5.0e-7},
     },
     "gnss": {"hz": 5.0, "horizontal_noise": 0.8, "vertical_noise": 1.5, "speed_noise": 0.1, "latency": 0.1},
+    "rangefinders": [ALTIMETER],
     "air_data": {"hz": 50.0, "static_noise": 3.0, "differential_noise": 4.0, "static_bias": 15.0, "differential_bias": 3.0},
 }
 
@@ -84,7 +86,7 @@ def _described(vehicle: str, model: str) -> tuple[dict[str, Any], list[str]]:
     body = tried(folder, first, notes)
     guessed = f"guessed: servos of {rate} rad/s with a lag of {lag:g} s, a motor of {MOTOR_LAG:g} s"
     servos = "found: servos in the model" if own else guessed
-    notes.add(f"{servos}; guessed: sensors, the sink rate that the landing gear holds")
+    notes.add(f"{servos}; guessed: sensors, among them a range finder for landings, and the sink rate that the landing gear holds")
     stance = stands(folder, body, body.physics_hz)
     if stance is not None:
         body = msgspec.structs.replace(body, skids=stance.skids)

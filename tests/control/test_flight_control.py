@@ -65,6 +65,14 @@ def test_yaw_is_damped_only_beyond_the_turn():
     assert once(cruising(roll=0.6, r=turn + 0.2)).rudder > 0.01
 
 
+def test_a_turn_is_held_by_the_ailerons_and_the_rudder_that_it_takes():
+    params = msgspec.structs.replace(PARAMS, aileron_turn=-0.1, rudder_turn=-0.2, rudder_mix=-0.5, yaw_damping=0.0, roll_i=0.0)
+    held, turn = AltitudeAirspeedSetpoint(0.6, 60.0, 0.0, 25.0), 9.80665 / 25 * math.sin(0.6)
+    surfaces = FlightControl(SERVOS).step(cruising(roll=0.6), held, params, 0.02)
+    assert surfaces.aileron == pytest.approx(-0.1 * turn, rel=0.01)
+    assert surfaces.rudder == pytest.approx(-0.2 * turn, rel=0.01), "and what the ailerons hold is no roll, that the rudder goes with"
+
+
 def test_slip_to_the_right_is_steered_out_by_the_rudder():
     control = FlightControl(SERVOS)
     for _ in range(100):

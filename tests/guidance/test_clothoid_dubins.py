@@ -86,5 +86,43 @@ def test_a_turn_and_a_straight_piece_touch_a_circle_in_its_sense(bearing, away, 
     assert np.hypot(*np.diff(way.points, axis=0).T).max() < 1.5
 
 
+@pytest.mark.parametrize("radius", [-90.0, 90.0])
+def test_the_way_begins_with_the_bend_that_is_flown_and_ends_with_that_of_the_circle(radius):
+    bend = -1 / radius
+    way = turned_onto_circle((-300.0, 100.0, 0.5), (0.0, 0.0, radius), RADIUS, RAMP, bend)
+    assert way.curvature[0] == pytest.approx(bend)
+    assert way.curvature[-1] == pytest.approx(1 / radius)
+    steepest = (1 / RADIUS + abs(bend)) / RAMP
+    assert np.abs(np.diff(way.curvature)).max() < 1.1 * steepest * np.diff(way.s).max(), "no step between them"
+    assert way.course[-1] - way.course[0] == pytest.approx(np.trapezoid(way.curvature, way.s), abs=0.01)
+
+
+def test_from_near_a_circle_it_is_joined_at_once():
+    way = turned_onto_circle((-15.0, -95.0, 0.4), (0.0, 0.0, 90.0), RADIUS, RAMP)
+    (x, y), c = way.points[-1], way.course[-1]
+    assert x * math.sin(c) - y * math.cos(c) == pytest.approx(90.0, abs=0.01)
+    assert way.curvature[-1] == 0.0
+
+
+@settings(max_examples=60, deadline=None)
+@given(point=st.tuples(st.floats(-400.0, 400.0), st.floats(-400.0, 400.0)), bend=st.sampled_from((-1 / 60, 1 / 90)))
+def test_a_turn_from_a_circle_begins_with_its_bend(point, bend):
+    way = turned_onto((0.0, 0.0, 0.3), point, RADIUS, RAMP, bend)
+    if way is None:
+        assert math.hypot(*point) < 4 * RADIUS
+        return
+    (n, e), c = np.array(point) - way.points[-1], way.course[-1]
+    assert way.curvature[0] == pytest.approx(bend)
+    assert e * math.cos(c) - n * math.sin(c) == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_dubins_path_from_a_turn_ends_where_it_is_to():
+    end = (250.0, -120.0, 2.0)
+    way = smooth_dubins_path(START, end, RADIUS, RAMP, 1 / 80)
+    assert way.curvature[0] == pytest.approx(1 / 80)
+    assert way.points[-1] == pytest.approx(end[:2], abs=1e-3)
+    assert math.remainder(way.course[-1] - end[2], math.tau) == pytest.approx(0.0, abs=1e-5)
+
+
 def test_from_within_a_circle_it_cannot_be_touched():
     assert turned_onto_circle((10.0, 20.0, 0.0), (0.0, 0.0, 90.0), RADIUS, RAMP) is None

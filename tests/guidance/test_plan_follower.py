@@ -86,6 +86,14 @@ def test_a_circle_after_a_leg_is_touched_and_then_kept(wind, radius):
     assert max(abs(now.roll) for _, now in log) < 1.15 * PARAMS.turn_bank
 
 
+def test_from_one_circle_to_the_next_the_bank_changes_once():
+    circles = [PlanItem(ItemKind.ORBIT, Place(300.0, e, 60.0), radius=100.0, turns=1.0) for e in (0.0, 500.0)]
+    _, log = fly(circles, 70.0)
+    left = next(k for k, (index, _) in enumerate(log) if index == 1)
+    turning = [now.roll for _, now in log[left : left + 100]]
+    assert min(turning) > 0.9 * turning[0], "it does not roll level first, and then turn"
+
+
 def test_an_orbit_without_turns_never_ends():
     navigator, _ = fly([PlanItem(ItemKind.ORBIT, Place(300.0, 0.0, 60.0), radius=90.0), waypoint(0.0, 0.0)], 200.0)
     assert navigator.index == 0

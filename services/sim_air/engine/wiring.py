@@ -102,8 +102,10 @@ class Wiring:
         return [read() for read in self._joints]
 
     def _command(self, name: str, body: AirBody, place: FileLocation) -> list[CommandLine]:
-        """Standard names that the model has not are left out."""
+        """Standard names that the model has not are left out; a surface that is not there leaves its property to others."""
         control = getattr(body.controls, name)
+        if isinstance(control, Surface) and not control.limit:
+            return []
         if control.property:
             targets = [self._there(target, place.at("property")) for target in body.controls.properties(name)]
         elif name == "throttle":

@@ -79,29 +79,31 @@ class AttitudeLoops:
     def step(self, cycle: Cycle, wanted: AttitudeSetpoint) -> Surfaces:
         """Surface deflections [rad] and throttle [0..1] for one cycle; bank, pitch and throttle asked for are limited first."""
         lifted = cycle.bank_with(max(wanted.lacking, 0.0) / UP_TIME)
-        aileron = self._aileron(cycle, clip(wanted.bank, min(lifted, self._pitch.bank_limit(cycle))))
+        turning = GRAVITY / cycle.speed * math.sin(cycle.now.roll) * math.cos(cycle.now.pitch)
+        aileron = self._aileron(cycle, clip(wanted.bank, min(lifted, self._pitch.bank_limit(cycle))), turning)
         elevator = self._pitch.step(cycle, wanted.pitch)
-        return Surfaces(aileron, elevator, self._rudder(cycle, aileron, wanted.rudder), min(max(wanted.throttle, 0.0), 1.0))
+        return Surfaces(aileron, elevator, self._rudder(cycle, aileron, turning, wanted.rudder), min(max(wanted.throttle, 0.0), 1.0))
 
-    def _aileron(self, cycle: Cycle, bank: float) -> float:
+    def _aileron(self, cycle: Cycle, bank: float, turning: float) -> float:
+        """bank: asked for [rad]; turning: r [rad/s] of a coordinated turn with the bank of now."""
         now, params = cycle.now, cycle.params
         rate = clip((bank - now.roll) / params.roll_time, ROLL_RATE_LIMIT)
         error = rate - now.p
-        moving = math.sqrt(cycle.scale) * params.roll_ff * rate + cycle.scale * params.roll_p * error
+        moving = math.sqrt(cycle.scale) * (params.roll_ff * rate + params.aileron_turn * turning) + cycle.scale * params.roll_p * error
         return self._roll.step(moving, cycle.scale, params.roll_i * error, cycle.dt)
 
-    def _rudder(self, cycle: Cycle, aileron: float, given: float | None) -> float:
+    def _rudder(self, cycle: Cycle, aileron: float, turning: float, given: float | None) -> float:
         """Holds the rate of a coordinated turn, damps what differs from it, and goes with the aileron against the yaw of a roll.
 
         Takes out slowly the side force of slipping, unless a rudder is given: what is felt less the force of the rudder itself, which is
         the larger one of a slender aircraft, and of the other sign.
         """
         now, params = cycle.now, cycle.params
-        turning = GRAVITY / cycle.speed * math.sin(now.roll) * math.cos(now.pitch)
         damping = cycle.scale * params.yaw_damping * (now.r - turning)
         if given is not None:
             return self._servos.rudder.within(damping + given)
-        ahead = params.rudder_mix * aileron
+        held = math.sqrt(cycle.scale) * turning
+        ahead = params.rudder_turn * held + params.rudder_mix * (aileron - params.aileron_turn * held)
         slipping = now.side_force - params.rudder_force / cycle.scale * self._steered
         self._steered = self._slip.step(damping + ahead, cycle.scale, params.slip_i * slipping, cycle.dt)
         return self._steered

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from uvf.maths.curves.dubins import Triple, dubins_paths
 
 Floats = NDArray[np.float64]
+Point = tuple[float, float]
 
 STEP = 1.0  # m, between samples at most, unless that makes more than SAMPLES
 SAMPLES = 20_000
@@ -64,18 +65,19 @@ class SampledPath:
         return float(np.interp(s, self.s, self.curvature, left=0.0, right=0.0))
 
 
-def smooth_dubins_path(start: Triple, end: Triple, radius: float, ramp: float) -> SampledPath:
+def smooth_dubins_path(start: Triple, end: Triple, radius: float, ramp: float, bend: float = 0.0) -> SampledPath:
     """The shortest path of turns and straights from ``start`` to ``end`` with ramps of ``ramp`` [m] between curvatures.
 
-    start, end: (x [m], y [m], course [rad]); radius: [m], smallest. Where no word can be corrected (none has been seen), the plain
-    Dubins path. Raises ValueError for a radius that is not positive.
+    start, end: (x [m], y [m], course [rad]); radius: [m], smallest; bend: curvature [1/m] at the start. Where no word can be corrected
+    (none has been seen), the plain Dubins path. Raises ValueError for a radius that is not positive.
     """
     begin, finish = _ahead(start, ramp / 2), _ahead(end, -ramp / 2)
     words = sorted(dubins_paths(begin, finish, radius), key=lambda path: path.length)
     for path in words:
-        lengths = _corrected(_Word(start, radius, path.turns, ramp), path.lengths, end)
+        word = _Word(start, radius, path.turns, ramp, bend)
+        lengths = _corrected(word, path.lengths, end)
         if lengths is not None and lengths.min() > -CLOSE and lengths.max() < tau * radius + sum(path.lengths):
-            return _Word(start, radius, path.turns, ramp).way(lengths)
+            return word.way(lengths)
     shortest = min(dubins_paths(start, end, radius), key=lambda path: path.length)
     s = np.linspace(0.0, shortest.length, _count(shortest.length))
     x, y, course = shortest.at(s).T
@@ -88,18 +90,19 @@ class _Word:
     radius: float
     turns: tuple[int, int, int]
     ramp: float
+    bend: float = 0.0  # 1/m, at the start
 
     def way(self, lengths: Floats) -> SampledPath:
         total = float(lengths.sum()) + self.ramp
         s = np.linspace(0.0, total, _count(total))
         begins = np.concatenate(((0.0,), np.cumsum(lengths)))
-        steps = np.diff((0, *self.turns, 0)) / self.radius
+        steps = np.diff((self.bend, *(turn / self.radius for turn in self.turns), 0.0))
         since = s[:, None] - begins
-        curvature = np.clip(since / self.ramp, 0.0, 1.0) @ steps
-        course = self.start[2] + _risen(since, self.ramp) @ steps
+        curvature = self.bend + np.clip(since / self.ramp, 0.0, 1.0) @ steps
+        course = self.start[2] + self.bend * s + _risen(since, self.ramp) @ steps
         # Simpson's rule, with the course between two samples
-        middle = since[:-1] + s[1] / 2
-        half = self.start[2] + _risen(middle, self.ramp) @ steps
+        middle = s[:-1] + s[1] / 2
+        half = self.start[2] + self.bend * middle + _risen(middle[:, None] - begins, self.ramp) @ steps
         points = [
             np.concatenate(((p,), p + np.cumsum(s[1] / 6 * (f(course[:-1]) + 4 * f(half) + f(course[1:])))))
             for p, f in zip(self.start[:2], (np.cos, np.sin), strict=True)
@@ -143,51 +146,101 @@ def _count(length: float) -> int:
     return min(max(int(length / STEP) + 2, 3), SAMPLES)
 
 
-def turned_onto(start: Triple, point: tuple[float, float], radius: float, ramp: float) -> SampledPath | None:
+def turned_onto(start: Triple, point: Point, radius: float, ramp: float, bend: float = 0.0) -> SampledPath | None:
     """The path from ``start`` by one turn, the shorter, until straight on leads through ``point``; None where none is found.
 
-    start: (x [m], y [m], course [rad]); point: [m]; radius and ramp of the turn: [m]. A point within the turning circle to one side is
-    reached by the turn to the other.
+    start: (x [m], y [m], course [rad]); point: [m]; radius and ramp of the turn: [m]; bend: curvature [1/m] at the start. A point within
+    the turning circle to one side is reached by the turn to the other.
     """
-    ways = [way for side in (1, -1) if (way := _one_turn(_Word(start, radius, (side, 0, 0), ramp), point)) is not None]
+    ways = [way for side in (1, -1) if (way := _one_turn(_Word(start, radius, (side, 0, 0), ramp, bend), point)) is not None]
     return min(ways, key=lambda way: way.length, default=None)
 
 
-def turned_onto_circle(start: Triple, circle: Triple, radius: float, ramp: float) -> SampledPath | None:
-    """The path from ``start`` by one turn, then straight on to where it touches ``circle`` in its sense; None from within it.
+def turned_onto_circle(start: Triple, circle: Triple, radius: float, ramp: float, bend: float = 0.0) -> SampledPath | None:
+    """The path from ``start`` by one turn, then straight on and by a ramp onto ``circle`` in its sense; None from within it.
 
     start: (x [m], y [m], course [rad]); circle: x, y of the centre [m], its radius [m], positive from x towards y; radius and ramp of
-    the turn: [m].
+    the turn: [m]; bend: curvature [1/m] at the start. The ramp onto the circle is shorter by its radius; from nearby there is none.
     """
-    ways = [way for side in (1, -1) if (way := _turn_and_tangent(_Word(start, radius, (side, 0, 0), ramp), circle)) is not None]
-    return min(ways, key=lambda way: way.length, default=None)
-
-
-def _turn_and_tangent(word: _Word, circle: Triple) -> SampledPath | None:
-    """The turn decides the tangent and the tangent the turn: found by repetition."""
-    touching = _tangent((word.start[0], word.start[1]), circle)
-    for _ in range(ITERATIONS):
-        way = _one_turn(word, touching) if touching is not None else None
-        if way is None or touching is None:
-            return None
-        before, touching = touching, _tangent((float(way.points[-1, 0]), float(way.points[-1, 1])), circle)
-        if touching is not None and hypot(touching[0] - before[0], touching[1] - before[1]) < TOUCHING:
-            return _straight_on(way, touching)
+    eased = _Clothoid(circle, ramp * min(radius / abs(circle[2]), 1.0))
+    words = [_Word(start, radius, (side, 0, 0), ramp, bend) for side in (1, -1)]
+    for onto in (eased, _Clothoid(circle, 0.0)):
+        ways = [way for word in words if (way := _turn_and_tangent(word, onto)) is not None]
+        if ways:
+            return min(ways, key=lambda way: way.length)
     return None
 
 
-def _tangent(point: tuple[float, float], circle: Triple) -> tuple[float, float] | None:
-    """Where the circle is touched by the straight line from a point outside; None from within."""
-    x, y, radius = circle
-    dx, dy = x - point[0], y - point[1]
-    away = hypot(dx, dy)
-    if away <= abs(radius):
-        return None
-    course, length = atan2(dy, dx) - asin(radius / away), (away**2 - radius**2) ** 0.5
-    return point[0] + length * cos(course), point[1] + length * sin(course)
+@dataclass(frozen=True)
+class _Clothoid:
+    """The ramp from a straight line onto a circle: the line passes the circle further outside, and the ramp begins ahead of its foot."""
+
+    circle: Triple
+    ramp: float
+
+    @cached_property
+    def local(self) -> tuple[Floats, Floats, Floats]:
+        """Points (k, 2) [m] along the line and to the inside, turned so far [rad] and curvature [1/m], towards the inside."""
+        s = np.linspace(0.0, self.ramp, _count(self.ramp))
+        bend = s / max(self.ramp, CLOSE) / abs(self.circle[2])
+        turned = bend * s / 2
+        middle = (s[:-1] + s[1] / 2) ** 2 / (2 * max(self.ramp, CLOSE) * abs(self.circle[2]))
+        steps = [s[1] / 6 * (f(turned[:-1]) + 4 * f(middle) + f(turned[1:])) for f in (np.cos, np.sin)]
+        return np.column_stack([np.concatenate(((0.0,), np.cumsum(step))) for step in steps]), turned, bend
+
+    @property
+    def shift(self) -> float:
+        """How far [m] outside of the circle the line passes."""
+        points, turned, _ = self.local
+        return float(points[-1, 1]) - abs(self.circle[2]) * (1 - cos(turned[-1]))
+
+    @property
+    def before(self) -> float:
+        """How far [m] ahead of the circle's foot on the line the ramp begins."""
+        points, turned, _ = self.local
+        return float(points[-1, 0]) - abs(self.circle[2]) * sin(turned[-1])
+
+    def begins(self, point: Point) -> Point | None:
+        """Where the ramp begins on the line from a point that goes onto the circle; None from too near."""
+        x, y, radius = self.circle
+        wide = radius + self.shift * (1 if radius > 0 else -1)
+        dx, dy = x - point[0], y - point[1]
+        away = hypot(dx, dy)
+        if away <= abs(wide):
+            return None
+        course, length = atan2(dy, dx) - asin(wide / away), (away**2 - wide**2) ** 0.5 - self.before
+        return (point[0] + length * cos(course), point[1] + length * sin(course)) if length >= 0 else None
+
+    def after(self, way: SampledPath) -> SampledPath:
+        """The way, which ends where the ramp begins, with the ramp."""
+        if not self.ramp:
+            return way
+        points, turned, bend = self.local
+        side, course = (1.0 if self.circle[2] > 0 else -1.0), float(way.course[-1])
+        along, inside = points[1:].T * ((1.0,), (side,))
+        c, s = cos(course), sin(course)
+        placed = way.points[-1] + np.column_stack((along * c - inside * s, along * s + inside * c))
+        return SampledPath(
+            np.concatenate((way.points, placed)),
+            np.concatenate((way.course, course + side * turned[1:])),
+            np.concatenate((way.curvature, side * bend[1:])),
+        )
 
 
-def _straight_on(way: SampledPath, point: tuple[float, float]) -> SampledPath:
+def _turn_and_tangent(word: _Word, onto: _Clothoid) -> SampledPath | None:
+    """The turn decides the tangent and the tangent the turn: found by repetition."""
+    begins = onto.begins((word.start[0], word.start[1]))
+    for _ in range(ITERATIONS):
+        way = _one_turn(word, begins) if begins is not None else None
+        if way is None or begins is None:
+            return None
+        before, begins = begins, onto.begins((float(way.points[-1, 0]), float(way.points[-1, 1])))
+        if begins is not None and hypot(begins[0] - before[0], begins[1] - before[1]) < TOUCHING:
+            return onto.after(_straight_on(way, begins))
+    return None
+
+
+def _straight_on(way: SampledPath, point: Point) -> SampledPath:
     """The way with a straight piece up to ``point``, which lies ahead of its end."""
     last = way.points[-1]
     count = _count(hypot(point[0] - last[0], point[1] - last[1]))
@@ -197,10 +250,10 @@ def _straight_on(way: SampledPath, point: tuple[float, float]) -> SampledPath:
     return SampledPath(np.concatenate((way.points, points)), courses, np.concatenate((way.curvature, np.zeros(count - 1))))
 
 
-def _one_turn(word: _Word, point: tuple[float, float]) -> SampledPath | None:
+def _one_turn(word: _Word, point: Point) -> SampledPath | None:
     """The secant method on the length of the turn, from where the circle's tangent leads through the point."""
     side, radius = word.turns[0], word.radius
-    x, y, course = _ahead(word.start, word.ramp / 2)
+    x, y, course = _ahead(word.start, word.ramp / 2 * (1 - side * radius * word.bend))
     dx, dy = point[0] - x + side * radius * sin(course), point[1] - y - side * radius * cos(course)
     if hypot(dx, dy) <= radius:
         return None

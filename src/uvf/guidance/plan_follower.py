@@ -9,7 +9,7 @@ from uvf.guidance.camera_trigger import CameraTrigger
 from uvf.guidance.corners import Corner
 from uvf.guidance.flight_plan import NO_JUMPS, OFF_PATH, ItemKind, NextItem, PlanItem, following, next_stop
 from uvf.guidance.route import AltitudeProfile, Circle, Curve, Leg, Place, Turn
-from uvf.guidance.route_planning import RoutePlanner
+from uvf.guidance.route_planning import Heading, RoutePlanner
 from uvf.guidance.vector_field import PathReference
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -122,10 +122,12 @@ class PlanFollower:
         lengths = [piece.s + k * piece.left / count for k in range(count)]
         return [piece.place(s) for s in lengths]
 
-    def _from_here(self, now: Estimate, params: AirParams) -> Piece:
+    def _from_here(self, now: Estimate, params: AirParams, circle: Circle | None = None) -> Piece:
+        """circle: that it leaves."""
         target = self.target
-        course = now.course if target is not None and (target.course is not None or not target.flies_through) else None
-        return self._planner(now, params).towards(self._stop, Place(now.north, now.east, now.height), course)
+        turns = target is not None and (target.course is not None or not target.flies_through)
+        begin = Heading(now.course, 1 / circle.radius if circle is not None else 0.0) if turns or circle is not None else None
+        return self._planner(now, params).towards(self._stop, Place(now.north, now.east, now.height), begin)
 
     def _planner(self, now: Estimate, params: AirParams, speed: float | None = None) -> RoutePlanner:
         """speed: m/s, 0 = cruise, None = that of now."""
@@ -158,10 +160,10 @@ class PlanFollower:
             for _ in piece.passing[piece.passed :]:
                 stop = following(self.items, stop)
             if stop.index is not None and self.items[stop.index].kind not in OFF_PATH:
-                piece.onto = self._planner(now, params, stop.speed).towards(stop, piece.end, float(piece.way.course[-1]))
+                piece.onto = self._planner(now, params, stop.speed).towards(stop, piece.end, Heading(float(piece.way.course[-1])))
         elif piece.left > SETTLED * now.ground_speed and self._wind_turned(now) and piece.is_straight and piece.ends_at_item:
             north, east, course = piece.here
-            self._piece = self._planner(now, params).towards(self._stop, Place(north, east, piece.level(now).height), course)
+            self._piece = self._planner(now, params).towards(self._stop, Place(north, east, piece.level(now).height), Heading(course))
 
     def _wind_turned(self, now: Estimate) -> bool:
         return math.hypot(now.wind_north - self._wind[0], now.wind_east - self._wind[1]) > ANOTHER_WIND
@@ -189,7 +191,7 @@ class PlanFollower:
             return
         if piece.left > 0:
             return
-        onto = piece.onto or self._planner(now, params).towards(self._stop, piece.end, float(piece.way.course[-1]))
+        onto = piece.onto or self._planner(now, params).towards(self._stop, piece.end, Heading(float(piece.way.course[-1])))
         self._piece = self._planner(now, params).with_exit(onto, self._stop) if isinstance(onto, Leg) else onto
 
     def _pass(self) -> bool:
@@ -209,7 +211,7 @@ class PlanFollower:
         if not self._pass() or self._off_path:
             return
         if isinstance(piece, Circle):
-            self._piece = self._from_here(now, params)
+            self._piece = self._from_here(now, params, piece)
             return
         onto = self._planner(now, params).towards(self._stop, piece.end, None, piece.exit)
         self._piece = Turn(piece.exit, piece, onto) if isinstance(piece.exit, Corner) and isinstance(onto, Leg) else onto

@@ -7,6 +7,7 @@ do not fit, along a curve that leaves the one leg and joins the other, past seve
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from uvf.guidance import bypass, corners
 from uvf.guidance.approach import orbit_radius
@@ -23,6 +24,13 @@ MOST_PASSED = 4  # waypoints, by one curve
 Bend = corners.Corner | Curve
 
 
+class Heading(NamedTuple):
+    """How a piece begins: course [rad] and curvature [1/m]."""
+
+    course: float
+    bend: float = 0.0
+
+
 @dataclass(frozen=True)
 class RoutePlanner:
     """Plans the pieces of a route for one airspeed in one wind."""
@@ -37,16 +45,16 @@ class RoutePlanner:
         """Limits of corners at this airspeed and in this wind, with ``turn_bank``."""
         return corners.CornerLimits(self.speed, self.wind, self.params.turn_bank, self.params.roll_in)
 
-    def towards(self, stop: NextItem, start: Place, course: float | None = None, entry: Bend | None = None) -> Leg | Curve | Circle:
-        """The piece from ``start`` to the item of ``stop``; with a ``course`` [rad] it begins in that direction."""
+    def towards(self, stop: NextItem, start: Place, begin: Heading | None = None, entry: Bend | None = None) -> Leg | Curve | Circle:
+        """The piece from ``start`` to the item of ``stop``; with a ``begin`` in that direction."""
         item = self._item(stop)
         if not item.flies_through:
-            return (self._onto_circle(start, course, item) if course is not None else None) or self._circle(item)
-        if course is not None and item.course is not None:
-            return self._between(start, course, item)
+            return (self._onto_circle(start, begin, item) if begin is not None else None) or self._circle(item)
+        if begin is not None and item.course is not None:
+            return self._between(start, begin, item)
         leg = Leg(start, item.place, entry)
-        if course is not None and abs(math.remainder(leg.course - course, math.tau)) > corners.STRAIGHT:
-            return self._joining(start, course, stop) or self.with_exit(leg, stop)
+        if begin is not None and abs(math.remainder(leg.course - begin.course, math.tau)) > corners.STRAIGHT:
+            return self._joining(start, begin, stop) or self.with_exit(leg, stop)
         return self.with_exit(leg, stop)
 
     def with_exit(self, leg: Leg, stop: NextItem) -> Leg:
@@ -56,7 +64,7 @@ class RoutePlanner:
             return replace(leg, exit=self._circle_ahead(leg, stop))
         item, then = self._item(stop), self._item(onward)
         if then.course is not None:
-            curve = self._between(item.place, leg.course, then)
+            curve = self._between(item.place, Heading(leg.course), then)
             return replace(leg, exit=replace(curve, passing=(0.0, *curve.passing), heights=(curve.heights[0], *curve.heights)))
         onto = Leg(item.place, then.place)
         if abs(_change(leg, onto)) < corners.STRAIGHT:
@@ -68,14 +76,14 @@ class RoutePlanner:
         then = following(self.items, stop)
         if then.index is None or self._item(then).kind in OFF_PATH:
             return None
-        curve = self._onto_circle(leg.end, leg.course, self._item(then))
+        curve = self._onto_circle(leg.end, Heading(leg.course), self._item(then))
         return replace(curve, passing=(0.0,), heights=(curve.heights[0], *curve.heights)) if curve is not None else None
 
-    def _onto_circle(self, start: Place, course: float, item: PlanItem) -> Curve | None:
+    def _onto_circle(self, start: Place, begin: Heading, item: PlanItem) -> Curve | None:
         """By a turn and straight on; None where it begins within the circle."""
         circle = self._circle(item)
         flying, ring = self.flying, (*circle.centre.point, circle.radius)
-        way = turned_onto_circle((*start.point, course), ring, flying.radius, flying.ramp)
+        way = turned_onto_circle((*start.point, begin.course), ring, flying.radius, flying.ramp, begin.bend)
         return Curve(way, (), (start.height, item.place.height), onto=circle) if way is not None else None
 
     def _circle(self, item: PlanItem) -> Circle:
@@ -90,16 +98,17 @@ class RoutePlanner:
         then = following(self.items, stop)
         return then if then.index is not None and self._item(then).flies_through else None
 
-    def _between(self, start: Place, course: float, item: PlanItem) -> Curve:
+    def _between(self, start: Place, begin: Heading, item: PlanItem) -> Curve:
         """The Dubins path to an item with a course."""
         assert item.course is not None
-        way = smooth_dubins_path((*start.point, course), (*item.place.point, item.course), self.flying.radius, self.flying.ramp)
+        ends = (*start.point, begin.course), (*item.place.point, item.course)
+        way = smooth_dubins_path(*ends, self.flying.radius, self.flying.ramp, begin.bend)
         return Curve(way, (way.length,), (start.height, item.place.height, item.place.height))
 
-    def _joining(self, start: Place, course: float, stop: NextItem) -> Curve | None:
+    def _joining(self, start: Place, begin: Heading, stop: NextItem) -> Curve | None:
         """From a course onto the leg to an item without one."""
         item = self._item(stop)
-        way = turned_onto((*start.point, course), item.place.point, self.flying.radius, self.flying.ramp)
+        way = turned_onto((*start.point, begin.course), item.place.point, self.flying.radius, self.flying.ramp, begin.bend)
         if way is None:
             return None
         north, east = way.points[-1].tolist()

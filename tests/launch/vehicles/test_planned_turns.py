@@ -9,7 +9,7 @@ import pytest
 
 from launch.vehicles.aircraft_rules import HEIGHT, SEA_LEVEL
 from launch.vehicles.aircraft_trial import ABOVE_STALL, _clear_of_stall, level
-from launch.vehicles.autopilot_guess import STEEPEST_BANK, planned_bank, sustained_bank
+from launch.vehicles.autopilot_guess import STEEPEST_BANK, autopilot_figures, planned_bank, sustained_bank
 from services.sim_air.analysis.linear import held_still
 from services.sim_air.analysis.performance import stall
 from services.sim_air.engine.airframe import Airframe
@@ -92,3 +92,17 @@ def test_a_speed_is_looked_for_that_is_clear_of_the_stall():
     assert 6.0 < stalled < 8.0
     assert _clear_of_stall(airframe, 1.2 * stalled) == pytest.approx(1.2, abs=0.01)
     assert _clear_of_stall(airframe, 17.0) == ABOVE_STALL
+
+
+@pytest.mark.parametrize("model", ["milvus", "stick25"])
+def test_what_holds_a_turn_is_that_of_the_steady_turn(model):
+    """Ailerons and rudder of a turn, added to those of level flight, hold another turn than the one that they are from."""
+    body = load_vehicle(ROOT / "vehicles", model).air
+    airframe, speed = Airframe(ROOT / "vehicles" / model, body, SEA_LEVEL), body.trim_speed
+    figures = autopilot_figures(airframe, body)
+    straight, turn = airframe.start(level(speed)), airframe.start(_turn(speed, 0.5))
+    yawing = -GRAVITY / speed * math.sin(0.5)  # to the left
+    for name in ("aileron", "rudder"):
+        held = getattr(straight, name) + figures[f"{name}_turn"] * yawing
+        assert held == pytest.approx(getattr(turn, name), abs=0.006), name
+        assert abs(held - getattr(straight, name)) > 0.005, name

@@ -21,9 +21,10 @@ from uvf.models.vehicle.flight_params import AirParams
 
 OMEGA: Floats = np.geomspace(0.02, 150.0, 110)  # rad/s
 TURBULENCE, HEIGHT = "moderate", 100.0  # m
-BANK_OFF, SLOW_BANK_OFF, PITCH_OFF = (0.05, 1.0), (0.025, 20.0), (0.01, 5.0)
-"""rad and s: disturbances that come on bank and pitch, and how long they last. A bank that is off as long as a turn is what a circle meets:
-its feed-forward is not that of this aircraft."""
+BANK_OFF, PITCH_OFF = (0.05, 1.0), (0.01, 5.0)
+"""rad and s: disturbances that come on bank and pitch, and how long they last."""
+LASTING = {"bank": (0.025, 20.0), "rudder_asked": (0.01, 20.0)}
+"""The same of what is off for as long as a turn: its feed-forward is not that of this aircraft, a propeller's torque changes."""
 MIX = 0.25  # least share of the rudder that a steady roll needs; for gusts alone the search would take none
 LATERAL = {
     "roll_time": (0.1, 2.0),
@@ -61,6 +62,7 @@ STIFF = {"roll_p": 0.15, "roll_i": 0.3, "pitch_p": 0.3, "pitch_i": 1.0}
 STEEP = 0.3  # 1/s, with which a path is approached at least
 SLOWEST, SLOWER = 0.5, 4.0  # s, and of the delays: the longest time constant of an attitude
 ASIDE, ABOVE, FASTER = 0.5, 0.5, 0.7  # m, m, m/s: errors in turbulence, each worth as much as the surfaces' whole budget
+LASTING_ASIDE = 0.5  # m, of ASIDE's kind: an error that is there in calm, too
 SHORT_OF_POWER = 2.0  # m/s, of the airspeed while the throttle is at its stop, where the height counts, too
 DESIGN_SPEED = 20.0  # m/s, up to which lengths are those; they grow with a higher one
 FINAL_SHARE, FINAL_WAY = 0.3, 3.0  # of ABOVE, of PITCH_WAY: budgets near the ground
@@ -136,11 +138,11 @@ def longer(airspeed: float) -> float:
 
 
 def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
-    air, aside = _air(aircraft, params), ASIDE * longer(params.trim_airspeed)
+    air, length = _air(aircraft, params), longer(params.trim_airspeed)
 
     def wanted(flow: SignalFlow) -> float:
         error, way = _aside(air, flow)
-        return _within(firmness * error / aside, way / ROLL_WAY)
+        return _within(firmness * error / (length * ASIDE), firmness * _lasting(flow) / (length * LASTING_ASIDE), way / ROLL_WAY)
 
     gains = LATERAL | _inner("roll", aircraft.delays.total("aileron"), params.roll_ff, LATERAL)
     gains["k_path"] = STEEP / (params.trim_airspeed * params.chi_inf * 2 / np.pi), LATERAL["k_path"][1]
@@ -191,9 +193,13 @@ def _by_pitch(
 
 def _aside(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
     """Error beside the path [m] in gusts and after disturbances of bank, and the way of ailerons and rudder [deg/s]."""
-    off = [disturbed(flow, "aside", "bank", *by) for by in (BANK_OFF, SLOW_BANK_OFF)]
-    error = math.hypot(air.rms(flow, "aside", "vpr"), *off)
+    error = math.hypot(air.rms(flow, "aside", "vpr"), disturbed(flow, "aside", "bank", *BANK_OFF))
     return error, WAY * sum(air.rms(flow, surface, "vpr", rate=True) for surface in ("servo_a", "servo_r"))
+
+
+def _lasting(flow: SignalFlow) -> float:
+    """Error beside the path [m] after disturbances that last."""
+    return math.hypot(*(disturbed(flow, "aside", at, *by) for at, by in LASTING.items()))
 
 
 def _above(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
@@ -209,8 +215,8 @@ def final_axes(aircraft: AircraftLoops, params: AirParams, firmness: float) -> l
 
     def beside(flow: SignalFlow) -> float:
         error, way = _aside(air, flow)
-        level = air.rms(flow, "phi", "vpr") / LEVEL
-        return _within(firmness * error / (share * ASIDE), firmness * level, way / (FINAL_WAY * ROLL_WAY))
+        lasting, level = _lasting(flow) / (share * LASTING_ASIDE), air.rms(flow, "phi", "vpr") / LEVEL
+        return _within(firmness * error / (share * ASIDE), firmness * lasting, firmness * level, way / (FINAL_WAY * ROLL_WAY))
 
     def above(flow: SignalFlow) -> float:
         error, way = _above(air, flow)

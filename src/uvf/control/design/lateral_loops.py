@@ -60,15 +60,26 @@ def _roll(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
     flow.integral("roll_trim", {name: params.roll_i * value for name, value in error.items()})
     moving = {name: math.sqrt(scale) * params.roll_ff * value for name, value in asked.items()}
     moving = {name: moving.get(name, 0.0) + scale * params.roll_p * value for name, value in error.items()}
+    moving["phi"] += _held(flight, params) * params.aileron_turn
     flow.equal("aileron_asked", moving | {"roll_trim": scale})
 
 
 def _yaw(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
     scale = _scale(flight, params)
     flow.integral("slip_trim", {"side_force": params.slip_i, "rudder_asked": -params.slip_i * params.rudder_force / scale})
-    turning = GRAVITY / flight.airspeed  # rad/s per rad of bank
-    damped = {"r_felt": scale * params.yaw_damping, "phi": -scale * params.yaw_damping * turning, "slip_trim": scale}
+    ahead = _held(flight, params) * (params.rudder_turn - params.rudder_mix * params.aileron_turn)
+    damped = {"r_felt": scale * params.yaw_damping, "phi": ahead - scale * params.yaw_damping * _turning(flight), "slip_trim": scale}
     flow.equal("rudder_asked", damped | {"aileron_asked": params.rudder_mix})
+
+
+def _turning(flight: FlightCondition) -> float:
+    """Yaw rate [rad/s] of a coordinated turn per rad of bank."""
+    return GRAVITY / flight.airspeed
+
+
+def _held(flight: FlightCondition, params: AirParams) -> float:
+    """The same for what holds against damping, which goes with airspeed, not with its square."""
+    return math.sqrt(_scale(flight, params)) * _turning(flight)
 
 
 def rudder_of_roll(flight: FlightCondition) -> float:

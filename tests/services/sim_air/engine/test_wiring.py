@@ -43,7 +43,12 @@ def test_a_surface_may_go_further_one_way_than_the_other():
 
 
 def test_a_surface_that_is_not_there_is_not_moved():
-    assert written(Controls(flap=0.3), controls=CommandProperties(flap=Surface(limit=0.0)))["fcs/flap-cmd-norm"] == 0.0
+    assert "fcs/flap-cmd-norm" not in written(Controls(flap=0.3), controls=CommandProperties(flap=Surface(limit=0.0)))
+
+
+def test_a_surface_that_is_not_there_leaves_its_property_to_another():
+    controls = CommandProperties(aileron=Surface(property="fcs/rudder-cmd-norm", limit=0.5), rudder=Surface(limit=0.0))
+    assert written(Controls(aileron=0.25, rudder=0.3), controls=controls)["fcs/rudder-cmd-norm"] == 0.5
 
 
 def test_each_engine_gets_the_throttle():
