@@ -30,6 +30,7 @@ from services.sim_air.service import SimAir
 from uvf.guidance.runways import Runway
 from uvf.guidance.vector_field import from_line
 from uvf.maths import rotations
+from uvf.maths.atmosphere import STRIP_ROUGHNESS
 from uvf.models.scenario import ROOT, Scenario, load_scenario
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -160,7 +161,7 @@ def flight_site(seed: int, wind: tuple[float, float], craft: Craft, folder: Path
     side = -1.0 if wind[0] > 0 else 1.0
     start = {"x": -140.0 * side, "y": 0.0, "z": 0.0, "yaw": 0.0 if side > 0 else np.pi} | craft.start()
     job = {"mission": [{**i, "x": side * float(i.get("x", 0.0))} if "x" in i else i for i in CIRCUIT]}
-    air: dict[str, Any] = {"steady": [*wind, 0.0], "shear": {"law": "logarithmic", "roughness": 0.046}}
+    air: dict[str, Any] = {"steady": [*wind, 0.0], "shear": {"law": "logarithmic", "roughness": STRIP_ROUGHNESS}}
     if any(wind):
         air["turbulence"] = {"severity": "light", "w20": WIND}
     vehicles = {PLANE: {"model": craft.model, "system_id": 1, "start": start, "job": job}}

@@ -16,7 +16,7 @@ from launch.vehicles.autopilot_guess import autopilot_figures, three_digits
 from launch.vehicles.tuning import rounded
 from services.sim_air.engine.airframe import Airframe
 from services.sim_air.engine.spin_up import FUEL_FREEZE
-from uvf.control.design.design_axes import BY_PITCH, FINAL, LATERAL, LONGITUDINAL
+from uvf.control.design.design_axes import GAINS
 from uvf.control.design.gain_start import begun
 from uvf.maths.atmosphere import RHO0
 from uvf.maths.geodesy import GRAVITY
@@ -145,7 +145,7 @@ def _autopilot(folder: Path, body: AirBody, stance: GroundStance | None, notes: 
     if unstable:
         notes.add(f"with these gains it is unstable at {unstable[0].airspeed:.0f} m/s")
     notes.add("'uvf vehicle tune NAME --write' designs its gains and shows their margins")
-    gains = {name: getattr(params, name) for name in (*LATERAL, *LONGITUDINAL, *BY_PITCH, *FINAL)}
+    gains = {name: getattr(params, name) for name in GAINS}
     path = folder / body.model / f"{body.model}.xml"
     leads = {name: three_digits(value) for name, value in timing(aircraft, params, body.controls.aileron.limit).items()}
     return figures | gains | leads | (_gear(path, stance, body, notes) if stance else {})

@@ -16,7 +16,7 @@ from launch.vehicles.linearize import airframe_of
 from launch.vehicles.parameter_lines import SERVICE, with_params
 from uvf.control.design import lateral_loops, longitudinal_loops
 from uvf.control.design.aircraft_loops import OMEGA, Loop
-from uvf.control.design.design_axes import BY_PITCH, FINAL, LATERAL, LONGITUDINAL
+from uvf.control.design.design_axes import GAINS
 from uvf.control.design.gain_search import GAIN, PEAK, PHASE, designed
 from uvf.control.design.gain_start import begun
 from uvf.control.design.margins import step_response
@@ -25,7 +25,6 @@ from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.yaml_data import BadInput, FileLocation, convert
 
-GAINS = (*LATERAL, "rudder_mix", *LONGITUDINAL, *BY_PITCH, *FINAL)
 SECONDS = 6.0  # of the step responses
 
 

@@ -96,17 +96,22 @@ class EnergyLoops:
         faster = _acceleration(cycle, self._airspeed(cycle, wanted) - cycle.now.airspeed, params.airspeed_p)
         higher = 0.0 if wanted.height is None else wanted.height - cycle.now.height
         climb = min(max(wanted.climb + params.altitude_p * higher, -params.sink_max), params.climb_max * _room(cycle))
-        full, airspeed = made(cycle, 1.0) + self._power.unexplained, self._airspeed(cycle, wanted)
-        most = full - _exchanged(cycle, airspeed - _lent(cycle, wanted, cycle.slowest))
+        reached = min(max(climb, self._least(cycle, wanted)), self._most(cycle, wanted, cycle.load))
         turn = max(cycle.load, 1 / math.cos(min(abs(wanted.bank), cycle.bank_with(0.0), FULL_BANK)))
-        drag = params.throttle_load * (turn**2 - cycle.load**2) / _slope(cycle) if params.throttle_climb else 0.0
-        slowest = min(cycle.slowest_with(turn), params.max_airspeed)
-        in_turn = full - drag - _exchanged(cycle, max(airspeed, slowest) - _lent(cycle, wanted, slowest))
-        spare = params.max_airspeed - cycle.now.airspeed
-        least = made(cycle, wanted.throttle or 0.0) + self._power.unexplained
-        least -= _acceleration(cycle, spare, params.airspeed_pitch_p if spare > 0 else params.airspeed_p)
-        reached = min(max(climb, least), most)
-        return Power(climb, faster, reached, max(min(reached, in_turn), min(reached, 0.0)))
+        return Power(climb, faster, reached, max(min(reached, self._most(cycle, wanted, turn)), min(reached, 0.0)))
+
+    def _most(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, load: float) -> float:
+        """m/s, the climb that full throttle makes with a load factor [-] while pitch holds the airspeed, less what may be lent."""
+        params, full = cycle.params, made(cycle, 1.0) + self._power.unexplained
+        drag = params.throttle_load * (load**2 - cycle.load**2) / _slope(cycle) if params.throttle_climb else 0.0
+        slowest = min(cycle.slowest_with(load), params.max_airspeed)
+        return full - drag - _exchanged(cycle, max(self._airspeed(cycle, wanted), slowest) - _lent(cycle, wanted, slowest))
+
+    def _least(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> float:
+        """m/s, the climb that is left with an idling engine, or with the throttle that is given, at the highest airspeed."""
+        params, spare = cycle.params, cycle.params.max_airspeed - cycle.now.airspeed
+        gain = params.airspeed_pitch_p if spare > 0 else params.airspeed_p
+        return made(cycle, wanted.throttle or 0.0) + self._power.unexplained - _acceleration(cycle, spare, gain)
 
     def _pitch(self, cycle: Cycle, climb: float) -> float:
         """rad: path angle plus the part of the angle of attack that lies in the vertical plane."""

@@ -37,12 +37,13 @@ def airspeed(differential_pressure: float, rho: float) -> float:
 
 FT = 0.3048  # m
 CEILING = 1000 * FT  # m, above which the mean wind grows no more
+STRIP_ROUGHNESS = 0.15 * FT  # m, for take-off and landing (MIL-F-8785C, 3.7.3.3)
 
 
 def logarithmic(height: float, roughness: float, reference: float) -> float:
     """Ratio [-] of the wind at ``height`` to that at ``reference`` [m above the ground]: MIL-F-8785C, 3.7.3.3, ln(h / z0) / ln(h_ref / z0).
 
-    roughness: z0 [m]; the standard has 0.15 ft for take-off and landing, 2 ft elsewhere. Below 3 ft it falls straight to nothing.
+    roughness: z0 [m]; the standard has that of a strip for take-off and landing, 2 ft elsewhere. Below 3 ft it falls straight to nothing.
     """
     lowest = max(3 * FT, 1.01 * roughness)
     h = min(max(height, 0.0), CEILING)

@@ -20,7 +20,7 @@ from uvf.guidance.approach import Approach
 from uvf.guidance.route import Circle, Place
 from uvf.guidance.runways import Runway
 from uvf.guidance.vector_field import line_reference
-from uvf.maths.atmosphere import logarithmic, power
+from uvf.maths.atmosphere import STRIP_ROUGHNESS, logarithmic, power
 from uvf.maths.filters import RunningMean
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
@@ -35,7 +35,6 @@ ALIGNED = 0.3  # rad, of the course on leaving the circle
 GUST_SHARE, GUST_MOST = 0.4, 0.2  # of the wind, of min_airspeed: what is added to it on the approach
 COMMITTED = 12.0  # m: below it, without satellites, it is landed by dead reckoning
 GATE = 10.0, 2.0  # m of height, between which the approach has to be a stable one
-ROUGHNESS = 0.046  # m, of a strip (MIL-F-8785C)
 SHEAR_AHEAD = 0.5  # s, in which pitch and throttle make up for airspeed that is lost
 TOO_HIGH, TOO_FAST = 3.0, 7.0  # m, m/s
 FLARE_TIME = 3.0  # s
@@ -230,7 +229,7 @@ class LandingMode(FlightPhase):
         """m/s of headwind that it will have sunk out of before pitch and throttle have answered, no more than gusts are allowed for."""
         height = max(self._wheels.height, 0.0) + params.gear_height
         below = max(height - max(-now.climb, TOUCH_SINK) * SHEAR_AHEAD, params.gear_height)
-        here, there = (logarithmic(h, ROUGHNESS, GROUND_WIND) for h in (height, below))
+        here, there = (logarithmic(h, STRIP_ROUGHNESS, GROUND_WIND) for h in (height, below))
         if here <= 0:
             return 0.0
         return min(max(-self.lane.tailwind(now), 0.0) * (1 - there / here), GUST_MOST * params.min_airspeed)

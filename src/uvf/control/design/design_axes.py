@@ -52,7 +52,8 @@ FINAL_LONGITUDINAL = ("climb_p", "pitch_time", "pitch_p", "pitch_i")
 """Those that the final approach has of its own, called ``final_*``; and ``flare_p``."""
 FLARE = {"flare_p": (0.2, 2.5)}
 FINAL = (*(f"final_{name}" for name in (*FINAL_LATERAL, *FINAL_LONGITUDINAL)), *FLARE)
-"""Gains that are searched for, within these limits in their own units."""
+GAINS = (*LATERAL, "rudder_mix", *LONGITUDINAL, *BY_PITCH, *FINAL)
+"""Gains that are searched for, within these limits in their own units; that of ``rudder_mix`` is the aircraft's own."""
 LATERAL_STARTS = ({"yaw_damping": (1.0, 4.0)}, {"rudder_mix": (1.0, 0.5, MIX)}, {"course_p": (1.0, 0.4), "k_path": (1.0, 0.4)})
 FULL_THROTTLE_STARTS = ({"airspeed_pitch_p": (1.0, 0.3)},)
 LONGITUDINAL_STARTS = ({"pitch_p": (1.0, 3.0)}, {"pitch_i": (1.0, 0.3)}, {"climb_p": (1.0, 0.4)}, {"altitude_p": (1.0, 0.4)})

@@ -14,7 +14,7 @@ from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.commands import AttitudeSetpoint, Surfaces
 from uvf.guidance.route import Place
 from uvf.guidance.runways import LandingStrip, lane_for
-from uvf.maths.atmosphere import logarithmic
+from uvf.maths.atmosphere import STRIP_ROUGHNESS, logarithmic
 from uvf.maths.geodesy import GRAVITY
 
 STRIP = LandingStrip(Place(0.0, 0.0, 5.0), math.pi / 2, 300.0, 12.0)  # east and west
@@ -253,7 +253,7 @@ def test_the_headwind_that_is_lost_near_the_ground_is_made_up_for_before_it_is_g
         return landing.step(now, params, 0.02).asked
 
     calm, windy = (asked(0.6, wind) for wind in (0.0, -5.0))
-    here, there = (logarithmic(height + PARAMS.gear_height, 0.046, 10.0) for height in (0.6, 0.6 - 0.5 * TOUCH_SINK))
+    here, there = (logarithmic(height + PARAMS.gear_height, STRIP_ROUGHNESS, 10.0) for height in (0.6, 0.6 - 0.5 * TOUCH_SINK))
     lost = 5.0 * (1 - there / here)  # half a second later, sinking as it is meant to
     assert windy.airspeed == pytest.approx(calm.airspeed + 0.4 * 5.0 + lost)
     lift = PARAMS.alpha_per_load * GRAVITY / 19.0**2 * ((1 - lost / 19.0) ** -2 - 1)  # rad
