@@ -40,6 +40,7 @@ AT_REST = 0.02  # m/s and rad/s
 TOUCHING = 0.5  # m above the reach of the wheels, from where on touches are looked for
 SWIFTEST = ("velocities/vt-fps", "velocities/p-rad_sec", "velocities/q-rad_sec", "velocities/r-rad_sec")
 RUNAWAY = 1e5  # ft/s and rad/s, from where on the engine's numbers soon end in none, and then the process
+SURFACES = ("aileron", "elevator", "rudder")  # that trim
 
 
 class Airframe:
@@ -102,7 +103,7 @@ class Airframe:
         if not trim.converged:
             flight = "level flight" if start.path == FlightPath(start.airspeed) else "climb or turn like this"
             raise BadInput(f"{self._path}: no {flight} at {start.airspeed} m/s: {trim.lacks}")
-        for name in ("aileron", "elevator", "rudder"):
+        for name in SURFACES:
             surface, needed = getattr(self._body.controls, name), getattr(trim, name)
             if not surface.reaches(needed):
                 way = f"it goes from {surface.lowest():g} to {surface.limit:g} rad"
@@ -177,7 +178,8 @@ class Airframe:
     def _trim(self, start: InitialState) -> Trim:
         self.hold_still(True)
         calm = replace(start, wind=np.zeros(3))  # a turn through moving air is steady in the air only
-        trim = solve(lambda guess: self.accelerations(calm, guess), start.path.bank, self.powered)
+        found = solve(lambda guess: self.accelerations(calm, guess), start.path.bank, self.powered)
+        trim = replace(found, **{name: 0.0 for name in SURFACES if not getattr(self._body.controls, name).limit})
         self.accelerations(start, trim)
         self.hold_still(False)
         return trim

@@ -121,6 +121,20 @@ def test_an_aircraft_of_which_the_full_mix_of_the_rudder_is_too_much_is_designed
     assert all(loop.stable and loop.margins.peak <= PEAK for loop in lateral)
 
 
+def test_a_flying_wing_is_designed_without_a_rudder():
+    side = replace(LATERAL, b=LATERAL.b * (1.0, 0.0))
+    craft = AircraftLoops(
+        (FlightCondition(SPEED, SPEED, 0.06, LONGITUDINAL, side, SPEED, 2.0),), ActuatorDelays(*[(0.05, 0.0)] * 3, (0.0, 0.2))
+    )
+    begins = begun(craft, PARAMS)
+    params = designed(craft, begins)
+    found = craft.loops(params)
+    assert "yaw" not in {loop.name for loop in found}
+    assert all(loop.stable and loop.margins.peak <= PEAK for loop in found)
+    assert all(loop.stable for loop in craft.worst(params))
+    assert (params.yaw_damping, params.slip_i) == (begins.yaw_damping, begins.slip_i), "what does nothing is not searched for"
+
+
 def test_gains_for_quick_servos_are_found_out_with_slow_ones():
     params = designed(aircraft(0.02), begun(aircraft(0.02), PARAMS))
     late = replace(aircraft(0.4), delays=ActuatorDelays(*[(0.4, 0.0)] * 3, (0.0, 0.2)))

@@ -18,6 +18,7 @@ from uvf.control.design.lateral_loops import rudder_of_roll
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.state_space import StateSpace
 from uvf.models.scenario import ROOT
+from uvf.models.vehicle.air import Surface
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -106,3 +107,14 @@ def test_what_holds_a_turn_is_that_of_the_steady_turn(model):
         held = getattr(straight, name) + figures[f"{name}_turn"] * yawing
         assert held == pytest.approx(getattr(turn, name), abs=0.006), name
         assert abs(held - getattr(straight, name)) > 0.005, name
+
+
+def test_an_aircraft_without_a_rudder_flies_level_and_turns():
+    body = load_vehicle(ROOT / "vehicles", "stick25").air
+    wing = msgspec.structs.replace(body, controls=msgspec.structs.replace(body.controls, rudder=Surface(limit=0.0)))
+    airframe = Airframe(ROOT / "vehicles" / "stick25", wing, SEA_LEVEL)
+    figures = autopilot_figures(airframe, wing)
+    assert figures["rudder_turn"] == 0.0
+    trim = airframe.start(_turn(body.trim_speed, 0.5))
+    assert trim.rudder == 0.0
+    assert trim.converged

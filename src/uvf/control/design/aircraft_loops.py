@@ -63,7 +63,7 @@ class AircraftLoops:
 
 def loops(flight: FlightCondition, delays: ActuatorDelays, params: AirParams, powered: bool = True) -> Iterator[Loop]:
     """Every loop at one airspeed; without an engine pitch holds the airspeed, on the final approach, too."""
-    yield from _of(lateral_loops.lateral_flow(OMEGA, flight, delays, params), lateral_loops.LOOPS, flight)
+    yield from _of(lateral_loops.lateral_flow(OMEGA, flight, delays, params), lateral_loops.loops_of(flight), flight)
     if powered:
         yield from _of(longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, params), longitudinal_loops.LOOPS, flight)
         yield from _of(longitudinal_loops.gliding_flow(OMEGA, flight, delays, params), longitudinal_loops.AT_FULL_THROTTLE, flight)

@@ -54,6 +54,7 @@ FLARE = {"flare_p": (0.2, 2.5)}
 FINAL = (*(f"final_{name}" for name in (*FINAL_LATERAL, *FINAL_LONGITUDINAL)), *FLARE)
 GAINS = (*LATERAL, "rudder_mix", *LONGITUDINAL, *BY_PITCH, *FINAL)
 """Gains that are searched for, within these limits in their own units; that of ``rudder_mix`` is the aircraft's own."""
+OF_RUDDER = ("yaw_damping", "slip_i")
 LATERAL_STARTS = ({"yaw_damping": (1.0, 4.0)}, {"rudder_mix": (1.0, 0.5, MIX)}, {"course_p": (1.0, 0.4), "k_path": (1.0, 0.4)})
 FULL_THROTTLE_STARTS = ({"airspeed_pitch_p": (1.0, 0.3)},)
 LONGITUDINAL_STARTS = ({"pitch_p": (1.0, 3.0)}, {"pitch_i": (1.0, 0.3)}, {"climb_p": (1.0, 0.4)}, {"altitude_p": (1.0, 0.4)})
@@ -146,6 +147,8 @@ def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
         return _within(firmness * error / (length * ASIDE), firmness * _lasting(flow) / (length * LASTING_ASIDE), way / ROLL_WAY)
 
     gains = LATERAL | _inner("roll", aircraft.delays.total("aileron"), params.roll_ff, LATERAL)
+    if not lateral_loops.has_rudder(_cruise(aircraft, params)):
+        gains = {name: limits for name, limits in gains.items() if name not in OF_RUDDER}
     gains["k_path"] = STEEP / (params.trim_airspeed * params.chi_inf * 2 / np.pi), LATERAL["k_path"][1]
     if mix := abs(lateral_loops.rudder_of_roll(_cruise(aircraft, params))):
         gains["rudder_mix"] = (MIX * mix, mix)

@@ -64,8 +64,22 @@ def _roll(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
     flow.equal("aileron_asked", moving | {"roll_trim": scale})
 
 
+def has_rudder(flight: FlightCondition) -> bool:
+    """Whether there is one: flying wings have none."""
+    return any(flight.lateral.slope(of, "delta_r") for of in ("v", "p", "r"))
+
+
+def loops_of(flight: FlightCondition) -> dict[str, str]:
+    """LOOPS, as far as this aircraft has them."""
+    return {name: at for name, at in LOOPS.items() if name != "yaw" or has_rudder(flight)}
+
+
 def _yaw(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:
     scale = _scale(flight, params)
+    if not has_rudder(flight):
+        for signal in ("slip_trim", "rudder_asked"):
+            flow.equal(signal, {})
+        return
     flow.integral("slip_trim", {"side_force": params.slip_i, "rudder_asked": -params.slip_i * params.rudder_force / scale})
     ahead = _held(flight, params) * (params.rudder_turn - params.rudder_mix * params.aileron_turn)
     damped = {"r_felt": scale * params.yaw_damping, "phi": ahead - scale * params.yaw_damping * _turning(flight), "slip_trim": scale}
