@@ -9,7 +9,7 @@ from uvf.guidance.camera_trigger import CameraTrigger
 from uvf.guidance.corners import Corner
 from uvf.guidance.flight_plan import NO_JUMPS, OFF_PATH, ItemKind, NextItem, PlanItem, following, next_stop
 from uvf.guidance.route import AltitudeProfile, Circle, Curve, Leg, Place, Turn
-from uvf.guidance.route_planning import Heading, RoutePlanner
+from uvf.guidance.route_planning import PathStart, RoutePlanner
 from uvf.guidance.vector_field import PathReference
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -126,7 +126,7 @@ class PlanFollower:
         """circle: that it leaves."""
         target = self.target
         turns = target is not None and (target.course is not None or not target.flies_through)
-        begin = Heading(now.course, 1 / circle.radius if circle is not None else 0.0) if turns or circle is not None else None
+        begin = PathStart(now.course, 1 / circle.radius if circle is not None else 0.0) if turns or circle is not None else None
         return self._planner(now, params).towards(self._stop, Place(now.north, now.east, now.height), begin)
 
     def _planner(self, now: Estimate, params: AirParams, speed: float | None = None) -> RoutePlanner:
@@ -160,10 +160,10 @@ class PlanFollower:
             for _ in piece.passing[piece.passed :]:
                 stop = following(self.items, stop)
             if stop.index is not None and self.items[stop.index].kind not in OFF_PATH:
-                piece.onto = self._planner(now, params, stop.speed).towards(stop, piece.end, Heading(float(piece.way.course[-1])))
+                piece.onto = self._planner(now, params, stop.speed).towards(stop, piece.end, PathStart(float(piece.way.course[-1])))
         elif piece.left > SETTLED * now.ground_speed and self._wind_turned(now) and piece.is_straight and piece.ends_at_item:
             north, east, course = piece.here
-            self._piece = self._planner(now, params).towards(self._stop, Place(north, east, piece.level(now).height), Heading(course))
+            self._piece = self._planner(now, params).towards(self._stop, Place(north, east, piece.level(now).height), PathStart(course))
 
     def _wind_turned(self, now: Estimate) -> bool:
         return math.hypot(now.wind_north - self._wind[0], now.wind_east - self._wind[1]) > ANOTHER_WIND
@@ -191,7 +191,7 @@ class PlanFollower:
             return
         if piece.left > 0:
             return
-        onto = piece.onto or self._planner(now, params).towards(self._stop, piece.end, Heading(float(piece.way.course[-1])))
+        onto = piece.onto or self._planner(now, params).towards(self._stop, piece.end, PathStart(float(piece.way.course[-1])))
         self._piece = self._planner(now, params).with_exit(onto, self._stop) if isinstance(onto, Leg) else onto
 
     def _pass(self) -> bool:

@@ -24,7 +24,7 @@ MOST_PASSED = 4  # waypoints, by one curve
 Bend = corners.Corner | Curve
 
 
-class Heading(NamedTuple):
+class PathStart(NamedTuple):
     """How a piece begins: course [rad] and curvature [1/m]."""
 
     course: float
@@ -45,8 +45,8 @@ class RoutePlanner:
         """Limits of corners at this airspeed and in this wind, with ``turn_bank``."""
         return corners.CornerLimits(self.speed, self.wind, self.params.turn_bank, self.params.roll_in)
 
-    def towards(self, stop: NextItem, start: Place, begin: Heading | None = None, entry: Bend | None = None) -> Leg | Curve | Circle:
-        """The piece from ``start`` to the item of ``stop``; with a ``begin`` in that direction."""
+    def towards(self, stop: NextItem, start: Place, begin: PathStart | None = None, entry: Bend | None = None) -> Leg | Curve | Circle:
+        """The piece from ``start`` to the item of ``stop``; it begins as ``begin`` says, or else goes straight there."""
         item = self._item(stop)
         if not item.flies_through:
             return (self._onto_circle(start, begin, item) if begin is not None else None) or self._circle(item)
@@ -64,7 +64,7 @@ class RoutePlanner:
             return replace(leg, exit=self._circle_ahead(leg, stop))
         item, then = self._item(stop), self._item(onward)
         if then.course is not None:
-            curve = self._between(item.place, Heading(leg.course), then)
+            curve = self._between(item.place, PathStart(leg.course), then)
             return replace(leg, exit=replace(curve, passing=(0.0, *curve.passing), heights=(curve.heights[0], *curve.heights)))
         onto = Leg(item.place, then.place)
         if abs(_change(leg, onto)) < corners.STRAIGHT:
@@ -76,10 +76,10 @@ class RoutePlanner:
         then = following(self.items, stop)
         if then.index is None or self._item(then).kind in OFF_PATH:
             return None
-        curve = self._onto_circle(leg.end, Heading(leg.course), self._item(then))
+        curve = self._onto_circle(leg.end, PathStart(leg.course), self._item(then))
         return replace(curve, passing=(0.0,), heights=(curve.heights[0], *curve.heights)) if curve is not None else None
 
-    def _onto_circle(self, start: Place, begin: Heading, item: PlanItem) -> Curve | None:
+    def _onto_circle(self, start: Place, begin: PathStart, item: PlanItem) -> Curve | None:
         """By a turn and straight on; None where it begins within the circle."""
         circle = self._circle(item)
         flying, ring = self.flying, (*circle.centre.point, circle.radius)
@@ -98,14 +98,14 @@ class RoutePlanner:
         then = following(self.items, stop)
         return then if then.index is not None and self._item(then).flies_through else None
 
-    def _between(self, start: Place, begin: Heading, item: PlanItem) -> Curve:
+    def _between(self, start: Place, begin: PathStart, item: PlanItem) -> Curve:
         """The Dubins path to an item with a course."""
         assert item.course is not None
         ends = (*start.point, begin.course), (*item.place.point, item.course)
         way = smooth_dubins_path(*ends, self.flying.radius, self.flying.ramp, begin.bend)
         return Curve(way, (way.length,), (start.height, item.place.height, item.place.height))
 
-    def _joining(self, start: Place, begin: Heading, stop: NextItem) -> Curve | None:
+    def _joining(self, start: Place, begin: PathStart, stop: NextItem) -> Curve | None:
         """From a course onto the leg to an item without one."""
         item = self._item(stop)
         way = turned_onto((*start.point, begin.course), item.place.point, self.flying.radius, self.flying.ramp, begin.bend)
