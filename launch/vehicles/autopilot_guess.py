@@ -193,8 +193,10 @@ def _rates(models: LinearModels, body: AirBody) -> dict[str, float]:
         damping, power = abs(side.slope(rate, rate)), abs(side.slope(rate, surface))
         if power < 1e-6 * damping:
             why = f"{body.model}: nothing that the autopilot moves makes it {axis}"
-            how = "it banks by ailerons, and cannot fly an aeroplane that turns by its rudder alone"
-            raise BadInput(f"{why}: {how}; the figures of an airship are set by hand, with law: airship")
+            what = (
+                "an aeroplane that turns by its rudder alone cannot be flown, and an airship's figures are set by hand, with law: airship"
+            )
+            raise BadInput(f"{why}: {what}")
         found[f"{axis}_ff"] = _within(damping / power, 0.0, 2.0)
     return found
 
