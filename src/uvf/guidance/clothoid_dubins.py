@@ -91,12 +91,13 @@ class _Word:
     turns: tuple[int, int, int]
     ramp: float
     bend: float = 0.0  # 1/m, at the start
+    end: float = 0.0  # 1/m, at the end
 
     def way(self, lengths: Floats) -> SampledPath:
         total = float(lengths.sum()) + self.ramp
         s = np.linspace(0.0, total, _count(total))
         begins = np.concatenate(((0.0,), np.cumsum(lengths)))
-        steps = np.diff((self.bend, *(turn / self.radius for turn in self.turns), 0.0))
+        steps = np.diff((self.bend, *(turn / self.radius for turn in self.turns), self.end))
         since = s[:, None] - begins
         curvature = self.bend + np.clip(since / self.ramp, 0.0, 1.0) @ steps
         course = self.start[2] + self.bend * s + _risen(since, self.ramp) @ steps
@@ -178,53 +179,39 @@ class _Clothoid:
     circle: Triple
     ramp: float
 
+    def onward(self, start: Triple) -> SampledPath:
+        """The ramp from a place [m] and course [rad] on the line."""
+        return _Word(start, abs(self.circle[2]), (0, 0, 0), max(self.ramp, CLOSE), end=1 / self.circle[2]).way(np.zeros(3))
+
     @cached_property
-    def local(self) -> tuple[Floats, Floats, Floats]:
-        """Points (k, 2) [m] along the line and to the inside, turned so far [rad] and curvature [1/m], towards the inside."""
-        s = np.linspace(0.0, self.ramp, _count(self.ramp))
-        bend = s / max(self.ramp, CLOSE) / abs(self.circle[2])
-        turned = bend * s / 2
-        middle = (s[:-1] + s[1] / 2) ** 2 / (2 * max(self.ramp, CLOSE) * abs(self.circle[2]))
-        steps = [s[1] / 6 * (f(turned[:-1]) + 4 * f(middle) + f(turned[1:])) for f in (np.cos, np.sin)]
-        return np.column_stack([np.concatenate(((0.0,), np.cumsum(step))) for step in steps]), turned, bend
+    def offset(self) -> Point:
+        """How far [m] ahead of the circle's foot on the line the ramp begins, and how much wider than the circle is one that touches it.
 
-    @property
-    def shift(self) -> float:
-        """How far [m] outside of the circle the line passes."""
-        points, turned, _ = self.local
-        return float(points[-1, 1]) - abs(self.circle[2]) * (1 - cos(turned[-1]))
-
-    @property
-    def before(self) -> float:
-        """How far [m] ahead of the circle's foot on the line the ramp begins."""
-        points, turned, _ = self.local
-        return float(points[-1, 0]) - abs(self.circle[2]) * sin(turned[-1])
+        The second has the sign of the circle's radius.
+        """
+        ramp, radius = self.onward((0.0, 0.0, 0.0)), self.circle[2]
+        (x, y), turned = ramp.points[-1].tolist(), float(ramp.course[-1])
+        return x - radius * sin(turned), y - radius * (1 - cos(turned))
 
     def begins(self, point: Point) -> Point | None:
         """Where the ramp begins on the line from a point that goes onto the circle; None from too near."""
         x, y, radius = self.circle
-        wide = radius + self.shift * (1 if radius > 0 else -1)
+        before, wider = self.offset
         dx, dy = x - point[0], y - point[1]
-        away = hypot(dx, dy)
+        away, wide = hypot(dx, dy), radius + wider
         if away <= abs(wide):
             return None
-        course, length = atan2(dy, dx) - asin(wide / away), (away**2 - wide**2) ** 0.5 - self.before
+        course, length = atan2(dy, dx) - asin(wide / away), (away**2 - wide**2) ** 0.5 - before
         return (point[0] + length * cos(course), point[1] + length * sin(course)) if length >= 0 else None
 
     def after(self, way: SampledPath) -> SampledPath:
         """The way, which ends where the ramp begins, with the ramp."""
         if not self.ramp:
             return way
-        points, turned, bend = self.local
-        side, course = (1.0 if self.circle[2] > 0 else -1.0), float(way.course[-1])
-        along, inside = points[1:].T * ((1.0,), (side,))
-        c, s = cos(course), sin(course)
-        placed = way.points[-1] + np.column_stack((along * c - inside * s, along * s + inside * c))
-        return SampledPath(
-            np.concatenate((way.points, placed)),
-            np.concatenate((way.course, course + side * turned[1:])),
-            np.concatenate((way.curvature, side * bend[1:])),
-        )
+        x, y = way.points[-1].tolist()
+        ramp = self.onward((x, y, float(way.course[-1])))
+        parts = ((way.points, ramp.points), (way.course, ramp.course), (way.curvature, ramp.curvature))
+        return SampledPath(*(np.concatenate((before, then[1:])) for before, then in parts))
 
 
 def _turn_and_tangent(word: _Word, onto: _Clothoid) -> SampledPath | None:

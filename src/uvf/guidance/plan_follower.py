@@ -125,8 +125,8 @@ class PlanFollower:
     def _from_here(self, now: Estimate, params: AirParams, circle: Circle | None = None) -> Piece:
         """circle: that it leaves."""
         target = self.target
-        turns = target is not None and (target.course is not None or not target.flies_through)
-        begin = PathStart(now.course, 1 / circle.radius if circle is not None else 0.0) if turns or circle is not None else None
+        turns = circle is not None or (target is not None and (target.course is not None or not target.flies_through))
+        begin = PathStart(now.course, 1 / circle.radius if circle is not None else 0.0) if turns else None
         return self._planner(now, params).towards(self._stop, Place(now.north, now.east, now.height), begin)
 
     def _planner(self, now: Estimate, params: AirParams, speed: float | None = None) -> RoutePlanner:

@@ -20,16 +20,18 @@ def buses():
     router.close()
 
 
-def heard_by(bus, sinks, enough):
+def poll_until(bus, done):
     end = time.monotonic() + 10.0
-    while any(len(sink) < enough for sink in sinks) and time.monotonic() < end:
+    while not done() and time.monotonic() < end:
         bus.poll()
+
+
+def heard_by(bus, sinks, enough):
+    poll_until(bus, lambda: all(len(sink) >= enough for sink in sinks))
 
 
 def heard_until(bus, sink, seq):
-    end = time.monotonic() + 10.0
-    while not (sink and sink[-1].seq >= seq) and time.monotonic() < end:
-        bus.poll()
+    poll_until(bus, lambda: sink and sink[-1].seq >= seq)
 
 
 def publisher_heard(bus, qos, receiver, sinks):
