@@ -43,9 +43,18 @@ def test_a_climb_is_not_steeper_than_allowed():
 
 
 def test_a_turn_takes_elevator_up_and_throttle_for_its_load():
-    level, banked = once(cruising()), once(cruising(roll=0.8, pitch=0.07, q=0.28, r=0.27))
+    turn = AltitudeAirspeedSetpoint(0.8, 60.0, 0.0, 25.0)
+    level, banked = once(cruising()), once(cruising(roll=0.8, pitch=0.07, q=0.28, r=0.27), turn)
     assert banked.elevator < level.elevator - 0.02
     assert banked.throttle > level.throttle
+
+
+def test_the_lift_of_a_turn_comes_with_its_bank():
+    """The path turns V / L_alpha after the nose: while the bank grows the elevator leads, and gives way while it is taken back."""
+    into, held, out = (once(cruising(roll=0.6), AltitudeAirspeedSetpoint(bank, 60.0, 0.0, 25.0)).elevator for bank in (0.9, 0.6, 0.3))
+    assert into < held - 0.02 and out > held + 0.02
+    level, rolling = (once(cruising(), AltitudeAirspeedSetpoint(bank, 60.0, 0.0, 25.0)).elevator for bank in (0.0, 0.5))
+    assert rolling == pytest.approx(level, abs=1e-3), "a small bank takes no lift"
 
 
 def test_too_slow_takes_throttle_and_the_speed_asked_for_has_limits():

@@ -32,7 +32,7 @@ class AirshipAttitude:
             rudder = self._rudder(cycle, clip(wanted.bank, cycle.params.bank_limit))
         else:
             rudder = clip(wanted.rudder, self._limit)
-        return Surfaces(0.0, self._pitch.step(cycle, wanted.pitch), rudder, min(max(wanted.throttle, 0.0), 1.0))
+        return Surfaces(0.0, self._pitch.step(cycle, wanted.pitch, 0.0), rudder, min(max(wanted.throttle, 0.0), 1.0))
 
     def _rudder(self, cycle: Cycle, bank: float) -> float:
         params = cycle.params

@@ -40,12 +40,12 @@ class PitchLoop:
         load = (spare + math.sqrt(spare**2 + 4 * (by_load + damping) * damping)) / (2 * max(by_load + damping, LEAST))
         return max(math.acos(min(1 / max(load, 1.0), 1.0)), LEAST_BANK)
 
-    def step(self, cycle: Cycle, asked: float) -> float:
-        """Elevator [rad] for a pitch asked for [rad], which is limited first."""
+    def step(self, cycle: Cycle, asked: float, rolling: float) -> float:
+        """Elevator [rad] for a pitch asked for [rad], which is limited first; rolling: roll rate that is asked for [rad/s]."""
         now, params = cycle.now, cycle.params
         pitch = max(min(asked, cycle.highest_pitch), -params.pitch_limit)
         bank = clip(now.roll, FULL_BANK)
-        turning = GRAVITY / cycle.speed * math.sin(bank) * math.tan(bank)  # q of a level coordinated turn
+        turning = _turning(cycle, bank, rolling)
         upright = max(math.cos(bank), math.cos(STEEPEST_BANK))
         wanted = (pitch - now.pitch) / params.pitch_time * math.cos(bank) / upright**2  # of q only cos(bank) raises the nose
         carried = min(cycle.load, now.lift / GRAVITY)  # lift that is lost, as the airspeed falls, is to be won back
@@ -60,7 +60,7 @@ class PitchLoop:
 
     def _alpha_of(self, cycle: Cycle, load: float) -> float:
         """Angle of attack [rad] of a load factor that is asked for, which comes as lift turns the path: V / L_alpha later."""
-        asked, time = cycle.alpha_with(load), max(cycle.params.alpha_per_load * cycle.speed / cycle.eas**2, LEAST)
+        asked, time = cycle.alpha_with(load), _lift_time(cycle)
         before = asked if self._alpha is None else self._alpha
         self._alpha = before + (asked - before) * min(cycle.dt / time, 1.0)
         return self._alpha
@@ -80,15 +80,15 @@ class AttitudeLoops:
         """Surface deflections [rad] and throttle [0..1] for one cycle; bank, pitch and throttle asked for are limited first."""
         lifted = cycle.bank_with(max(wanted.lacking, 0.0) / UP_TIME)
         turning = GRAVITY / cycle.speed * math.sin(cycle.now.roll) * math.cos(cycle.now.pitch)
-        aileron = self._aileron(cycle, clip(wanted.bank, min(lifted, self._pitch.bank_limit(cycle))), turning)
-        elevator = self._pitch.step(cycle, wanted.pitch)
+        bank = clip(wanted.bank, min(lifted, self._pitch.bank_limit(cycle)))
+        rate = clip((bank - cycle.now.roll) / cycle.params.roll_time, ROLL_RATE_LIMIT)
+        aileron = self._aileron(cycle, rate, turning)
+        elevator = self._pitch.step(cycle, wanted.pitch, rate)
         return Surfaces(aileron, elevator, self._rudder(cycle, aileron, turning, wanted.rudder), min(max(wanted.throttle, 0.0), 1.0))
 
-    def _aileron(self, cycle: Cycle, bank: float, turning: float) -> float:
-        """bank: asked for [rad]; turning: r [rad/s] of a coordinated turn with the bank of now."""
-        now, params = cycle.now, cycle.params
-        rate = clip((bank - now.roll) / params.roll_time, ROLL_RATE_LIMIT)
-        error = rate - now.p
+    def _aileron(self, cycle: Cycle, rate: float, turning: float) -> float:
+        """rate: of roll, asked for [rad/s]; turning: r [rad/s] of a coordinated turn with the bank of now."""
+        params, error = cycle.params, rate - cycle.now.p
         moving = math.sqrt(cycle.scale) * (params.roll_ff * rate + params.aileron_turn * turning) + cycle.scale * params.roll_p * error
         return self._roll.step(moving, cycle.scale, params.roll_i * error, cycle.dt)
 
@@ -107,6 +107,22 @@ class AttitudeLoops:
         slipping = now.side_force - params.rudder_force / cycle.scale * self._steered
         self._steered = self._slip.step(damping + ahead, cycle.scale, params.slip_i * slipping, cycle.dt)
         return self._steered
+
+
+def _turning(cycle: Cycle, bank: float, rolling: float) -> float:
+    """q [rad/s] of a level coordinated turn, and of the lift that comes with its bank [rad] while that changes at ``rolling`` [rad/s].
+
+    The path turns as the lift does, which follows the nose by V / L_alpha: the nose has to lead by the change within that time,
+    but beyond the bank to which loads are compensated.
+    """
+    level = GRAVITY / cycle.speed * math.sin(bank)
+    change = level * (1 + 1 / math.cos(bank) ** 2) * rolling if abs(bank) < FULL_BANK else 0.0
+    return level * math.tan(bank) + clip(_lift_time(cycle) * change, PITCH_RATE_LIMIT)
+
+
+def _lift_time(cycle: Cycle) -> float:
+    """s, V / L_alpha: how late the path turns after the angle of attack."""
+    return max(cycle.params.alpha_per_load * cycle.speed / cycle.eas**2, LEAST)
 
 
 def _pull(cycle: Cycle, load: float) -> float:
