@@ -162,12 +162,12 @@ def test_while_the_elevator_is_at_its_stop_the_bank_gives_way_and_comes_back_lat
     loop, level = PitchLoop(SERVOS), Cycle(cruising(), PARAMS, 0.02)
     first = loop.bank_limit(level)
     for _ in range(150):
-        stopped = loop.step(Cycle(cruising(pitch=-0.4, q=-0.5), PARAMS, 0.02), 0.4)
+        stopped = loop.step(Cycle(cruising(pitch=-0.4, q=-0.5), PARAMS, 0.02), 0.4, 0.0)
     assert stopped == -SERVOS.elevator.limit
     given = loop.bank_limit(level)
     assert given < first - 0.1
     for _ in range(500):
-        loop.step(level, cruising().pitch)
+        loop.step(level, cruising().pitch, 0.0)
     assert loop.bank_limit(level) > given + 0.05
 
 

@@ -60,9 +60,9 @@ class PitchLoop:
 
     def _alpha_of(self, cycle: Cycle, load: float) -> float:
         """Angle of attack [rad] of a load factor that is asked for, which comes as lift turns the path: V / L_alpha later."""
-        asked, time = cycle.alpha_with(load), _lift_time(cycle)
+        asked = cycle.alpha_with(load)
         before = asked if self._alpha is None else self._alpha
-        self._alpha = before + (asked - before) * min(cycle.dt / time, 1.0)
+        self._alpha = before + (asked - before) * min(cycle.dt / cycle.lift_time, 1.0)
         return self._alpha
 
 
@@ -110,19 +110,14 @@ class AttitudeLoops:
 
 
 def _turning(cycle: Cycle, bank: float, rolling: float) -> float:
-    """q [rad/s] of a level coordinated turn, and of the lift that comes with its bank [rad] while that changes at ``rolling`` [rad/s].
+    """q [rad/s] of a level coordinated turn with this bank [rad], which changes at ``rolling`` [rad/s].
 
-    The path turns as the lift does, which follows the nose by V / L_alpha: the nose has to lead by the change within that time,
-    but beyond the bank to which loads are compensated.
+    The path turns as the lift does, which follows the nose by ``lift_time``: the nose leads by what the turn changes within that time,
+    up to the bank to which loads are compensated.
     """
     level = GRAVITY / cycle.speed * math.sin(bank)
     change = level * (1 + 1 / math.cos(bank) ** 2) * rolling if abs(bank) < FULL_BANK else 0.0
-    return level * math.tan(bank) + clip(_lift_time(cycle) * change, PITCH_RATE_LIMIT)
-
-
-def _lift_time(cycle: Cycle) -> float:
-    """s, V / L_alpha: how late the path turns after the angle of attack."""
-    return max(cycle.params.alpha_per_load * cycle.speed / cycle.eas**2, LEAST)
+    return level * math.tan(bank) + clip(cycle.lift_time * change, PITCH_RATE_LIMIT)
 
 
 def _pull(cycle: Cycle, load: float) -> float:

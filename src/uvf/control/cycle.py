@@ -33,6 +33,8 @@ class Cycle:
         """Load factor [-] of a level turn with this bank."""
         self.alpha = self.alpha_with(self.load)
         """Angle of attack [rad] that carries this load."""
+        self.lift_time = max(params.alpha_per_load * self.speed / self.eas**2, LEAST)
+        """V / L_alpha [s]: how late the path turns after the angle of attack."""
         lifting, per_load = max(params.alpha_max - params.alpha_zero_lift, LEAST), max(params.alpha_per_load, LEAST)
         lifted = lifting * self.eas**2 / (per_load * GRAVITY)
         self.load_limit = min(lifted, params.load_max)
