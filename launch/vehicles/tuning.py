@@ -21,6 +21,7 @@ from uvf.control.design.gain_search import GAIN, PEAK, PHASE, designed
 from uvf.control.design.gain_start import begun
 from uvf.control.design.margins import step_response
 from uvf.control.design.signal_flow import Floats, SignalFlow
+from uvf.control.flight_control import on_final
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.yaml_data import BadInput, FileLocation, convert
@@ -46,9 +47,14 @@ class Tuning:
     @cached_property
     def cruise(self) -> tuple[SignalFlow, SignalFlow]:
         """Lateral and longitudinal loops in cruise."""
-        flight, delays, params = self.aircraft.cruise, self.aircraft.loops.delays, self.params
-        lateral = lateral_loops.lateral_flow(OMEGA, flight, delays, params)
-        return lateral, longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, params)
+        at = OMEGA, self.aircraft.cruise, self.aircraft.loops.delays, self.params
+        return lateral_loops.lateral_flow(*at), longitudinal_loops.longitudinal_flow(*at)
+
+    @cached_property
+    def attitude(self) -> tuple[SignalFlow, SignalFlow]:
+        """Lateral and longitudinal loops that hold an attitude alone, at the speed of cruise."""
+        at = OMEGA, self.aircraft.cruise, self.aircraft.loops.delays, on_final(self.params)
+        return lateral_loops.attitude_flow(*at), longitudinal_loops.attitude_flow(*at)
 
     @property
     def unmet(self) -> list[str]:
@@ -152,10 +158,9 @@ def draw(tuning: Tuning, path: Path) -> None:
 
 
 def steps(tuning: Tuning, t: Floats) -> dict[str, Floats]:
-    """Bank and pitch (k,) at times ``t`` (k,) [s] after their command has risen by one, in cruise."""
-    lateral, longitudinal = tuning.cruise
-    bank = lateral.closed("phi", "bank") / lateral.closed("bank", "bank")
-    pitch = longitudinal.closed("theta", "pitch") / longitudinal.closed("pitch", "pitch")
+    """Bank and pitch (k,) at times ``t`` (k,) [s] after their command has risen by one, as by a stick, at the speed of cruise."""
+    lateral, longitudinal = tuning.attitude
+    bank, pitch = lateral.closed("phi", "bank"), longitudinal.closed("theta", "pitch")
     return {"bank": step_response(OMEGA, bank, t), "pitch": step_response(OMEGA, pitch, t)}
 
 

@@ -6,7 +6,7 @@ import msgspec
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS, cruising
-from uvf.control.attitude_loops import PitchLoop
+from uvf.control.attitude_loops import AttitudeLoops, PitchLoop
 from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint
 from uvf.control.cycle import Cycle
 from uvf.control.flight_control import FlightControl
@@ -126,6 +126,51 @@ def test_an_attitude_is_held_with_the_throttle_that_is_given():
     assert surfaces.elevator < FlightControl(SERVOS).hold(cruising(), AttitudeSetpoint(0.3, 0.0, 0.4), PARAMS, 0.02).elevator
 
 
+GENTLE = msgspec.structs.replace(PARAMS, pitch_time=2.0, final_pitch_time=0.25, pitch_p=0.05, final_pitch_p=0.3)
+
+GENTLE_FOR_LONG = msgspec.structs.replace(GENTLE, pitch_i=0.0)
+
+
+def pulled(ask, error):
+    """Elevator [rad] for so much of pitch [rad] more than there is."""
+    level, raised = (ask(cruising().pitch + more) for more in (0.0, error))
+    return level.elevator - raised.elevator
+
+
+def test_an_attitude_is_held_firmly_however_gently_a_path_is():
+    def hold(pitch):
+        return FlightControl(SERVOS).hold(cruising(), AttitudeSetpoint(0.0, pitch, 0.5), GENTLE, 0.02)
+
+    def gently(pitch):
+        control = AttitudeLoops(SERVOS)
+        return control.step(Cycle(cruising(), GENTLE, 0.02), AttitudeSetpoint(0.0, pitch, 0.5))
+
+    assert pulled(hold, 0.05) > 5 * pulled(gently, 0.05) > 0
+
+
+def test_at_its_limits_pitch_turns_back_firmly_however_gently_it_is_moved():
+    def elevator(pitch, asked):
+        return PitchLoop(SERVOS).step(Cycle(cruising(pitch=pitch), GENTLE, 0.02), asked, 0.0)
+
+    beyond = -GENTLE.pitch_limit - 0.1
+    back, gently = (elevator(pitch, asked) for pitch, asked in ((beyond, beyond), (0.05, 0.15)))
+    assert back < elevator(0.05, 0.05) - 3 * abs(gently - elevator(0.05, 0.05)), "back to the limit, though it asks for more"
+
+
+def test_climb_that_is_wanting_is_learnt_until_the_nose_is_at_its_limit():
+    """Not until the pitch asked for is: a gentle loop asks for more than it will have."""
+
+    def learnt(pitch, lift):
+        control, low = FlightControl(SERVOS), cruising(pitch=pitch, lift=lift, height=40.0, climb=-2.0)
+        for _ in range(50):
+            control.step(low, LEVEL, GENTLE, 0.02)
+        return control._outer["energy"]._trim.value
+
+    assert learnt(0.05, 9.8) > 0.01
+    assert learnt(0.05, 40.0) == 0.0, "the wing carries no more"
+    assert learnt(GENTLE.pitch_limit + 0.01, 9.8) == 0.0
+
+
 def test_a_rudder_that_is_given_takes_the_place_of_the_slip_loop_beside_the_damper():
     still, given = (
         FlightControl(SERVOS).hold(cruising(r=0.2, side_force=-2.0), AttitudeSetpoint(0.0, 0.05, 0.4, rudder), PARAMS, 0.02)
@@ -169,6 +214,23 @@ def test_while_the_elevator_is_at_its_stop_the_bank_gives_way_and_comes_back_lat
     for _ in range(500):
         loop.step(level, cruising().pitch, 0.0)
     assert loop.bank_limit(level) > given + 0.05
+
+
+def test_how_much_elevator_a_turn_takes_is_learnt_from_what_it_takes():
+    """As of an aircraft whose nose is heavier, or lighter, than its parameters say; its integrator may be as slow as it likes."""
+
+    def limit(less):
+        """Bank [rad] after ten seconds of level flight at a pitch that is held with so much less elevator."""
+        loop = PitchLoop(SERVOS)
+        for _ in range(500):
+            elevator = loop.step(level, asked + less, 0.0)
+        assert elevator == pytest.approx(trimmed - pulls * less, abs=0.01)
+        return loop.bank_limit(level)
+
+    level, asked = Cycle(cruising(lift=9.80665), GENTLE_FOR_LONG, 0.02), cruising().pitch
+    trimmed = PitchLoop(SERVOS).step(level, asked, 0.0)
+    pulls = (trimmed - PitchLoop(SERVOS).step(level, asked + 0.01, 0.0)) / 0.01
+    assert limit(-0.1) > limit(0.0) + 0.01 > limit(0.1) + 0.02
 
 
 def test_a_nose_is_raised_as_quickly_in_a_turn_as_with_level_wings():

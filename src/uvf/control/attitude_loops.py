@@ -16,6 +16,7 @@ PITCH_RATE_LIMIT = 0.8  # rad/s
 STEEPEST_BANK = 1.05  # rad, up to which pitch answers as quickly as with level wings
 UP_TIME = 1.0  # s, in which climb that is lacking is won back: before a turn, that gets its lift
 TURN_SHARE, LEAST_BANK = (0.3, 0.95), 0.25  # of the elevator's way that a turn may take; rad that it may always be banked
+LEARNT = 3.0  # s, over which it is learnt how much elevator is needed
 GIVES, TAKES, AT_STOP = 0.12, 0.1, 0.98  # 1/s: that share falls while the elevator is at its stop, and rises again
 
 
@@ -25,6 +26,7 @@ class PitchLoop:
     def __init__(self, servos: Servos) -> None:
         self._trim, self._limit = SurfaceTrim(servos.elevator), -servos.elevator.lowest
         self._alpha: float | None = None
+        self._beside = 0.0  # rad of elevator that level flight and turns take beside what the parameters say, as it has been lately
         self._share = TURN_SHARE[1]
 
     def bank_limit(self, cycle: Cycle) -> float:
@@ -33,7 +35,7 @@ class PitchLoop:
         From a + b n + c (n - 1 / n) = share, solved for the load factor n: what level flight takes, the angle of attack and the damping.
         """
         params = cycle.params
-        level = params.elev_zero_alpha + params.elev_per_alpha * params.alpha_zero_lift - cycle.scale * self._trim.value
+        level = params.elev_zero_alpha + params.elev_per_alpha * params.alpha_zero_lift + self._beside
         spare = self._share * self._limit + level
         by_load = -params.elev_per_alpha * params.alpha_per_load * GRAVITY / cycle.eas**2
         damping = math.sqrt(cycle.scale) * params.pitch_ff * GRAVITY / cycle.speed
@@ -41,22 +43,34 @@ class PitchLoop:
         return max(math.acos(min(1 / max(load, 1.0), 1.0)), LEAST_BANK)
 
     def step(self, cycle: Cycle, asked: float, rolling: float) -> float:
-        """Elevator [rad] for a pitch asked for [rad], which is limited first; rolling: roll rate that is asked for [rad/s]."""
+        """Elevator [rad] for a pitch asked for [rad], within limits that are held firmly, however gently pitch moves between them.
+
+        rolling: roll rate that is asked for [rad/s].
+        """
         now, params = cycle.now, cycle.params
-        pitch = max(min(asked, cycle.highest_pitch), -params.pitch_limit)
+        lowest, highest = ((limit - now.pitch) / params.final_pitch_time for limit in (-params.pitch_limit, cycle.highest_pitch))
+        nose = max(min((asked - now.pitch) / params.pitch_time, highest), lowest)  # rad/s
         bank = clip(now.roll, FULL_BANK)
         turning = _turning(cycle, bank, rolling)
         upright = max(math.cos(bank), math.cos(STEEPEST_BANK))
-        wanted = (pitch - now.pitch) / params.pitch_time * math.cos(bank) / upright**2  # of q only cos(bank) raises the nose
+        wanted = nose * math.cos(bank) / upright**2  # of q only cos(bank) raises the nose
         carried = min(cycle.load, now.lift / GRAVITY)  # lift that is lost, as the airspeed falls, is to be won back
         rate = max(min(wanted, _pull(cycle, cycle.load_limit - carried)), -_pull(cycle, params.load_max - 1)) + turning
         error = rate - now.q
         balance = params.elev_zero_alpha + params.elev_per_alpha * self._alpha_of(cycle, math.cos(bank) + cycle.speed * rate / GRAVITY)
         moving = math.sqrt(cycle.scale) * params.pitch_ff * rate + cycle.scale * params.pitch_p * error
         elevator = self._trim.step(balance - moving, -cycle.scale, params.pitch_i * error, cycle.dt)
+        self._beside += (elevator - self._said(cycle) - self._beside) * min(cycle.dt / LEARNT, 1.0)
         spent = elevator < -AT_STOP * self._limit
         self._share = min(max(self._share + (-GIVES if spent else TAKES) * cycle.dt, TURN_SHARE[0]), TURN_SHARE[1])
         return elevator
+
+    @staticmethod
+    def _said(cycle: Cycle) -> float:
+        """Elevator [rad] that balances lift and pitch rate of now, by the parameters."""
+        params = cycle.params
+        damped = math.sqrt(cycle.scale) * params.pitch_ff * cycle.now.q
+        return params.elev_zero_alpha + params.elev_per_alpha * cycle.alpha_felt - damped
 
     def _alpha_of(self, cycle: Cycle, load: float) -> float:
         """Angle of attack [rad] of a load factor that is asked for, which comes as lift turns the path: V / L_alpha later."""

@@ -44,8 +44,9 @@ class Cycle:
         """True airspeed [m/s] at which the load of now takes ``alpha_max``."""
         self.slowest = self.slowest_with(self.load)
         """The lowest airspeed [m/s] to ask for with the load of now."""
-        felt = params.alpha_zero_lift + params.alpha_per_load * now.lift / self.eas**2
-        self.highest_pitch = min(now.pitch + (params.alpha_max - felt) * math.cos(roll), params.pitch_limit)
+        self.alpha_felt = params.alpha_zero_lift + params.alpha_per_load * now.lift / self.eas**2
+        """Angle of attack [rad] of the lift that is felt."""
+        self.highest_pitch = min(now.pitch + (params.alpha_max - self.alpha_felt) * math.cos(roll), params.pitch_limit)
         """Pitch [rad] at which the angle of attack will be ``alpha_max``, and no more than ``pitch_limit``.
 
         The angle of attack of now is that of the lift that is felt: a kinematic one would take a downdraught for a stall.

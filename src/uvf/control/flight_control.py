@@ -71,9 +71,12 @@ class FlightControl:
         return self._inner[params.law].step(cycle, self._held)
 
     def hold(self, now: Estimate, wanted: AttitudeSetpoint, params: AirParams, dt: float) -> Surfaces:
-        """Surfaces that hold an attitude with a given throttle by the inner loops alone, for one cycle of ``dt`` [s]."""
+        """Surfaces that hold an attitude with a given throttle by the inner loops alone, for one cycle of ``dt`` [s].
+
+        As firmly as on the final approach: what holds a path leaves the attitude to the gusts as far as they do not move the path.
+        """
         self._held, self._flown = wanted, ""
-        return self._inner[params.law].step(Cycle(now, params, dt), wanted)
+        return self._inner[params.law].step(Cycle(now, on_final(params), dt), wanted)
 
 
 def on_final(params: AirParams) -> AirParams:

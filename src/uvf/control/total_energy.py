@@ -21,6 +21,7 @@ from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
 CLIMB_TRIM_LIMIT = 0.35  # rad, of the integrator on pitch: as much as an updraught tilts the path, even at the lowest airspeed
+FADES, HANDED_OVER = 1.0, 0.005  # s, in which pitch goes over to what the path takes; rad of it that is left when trim is learnt again
 ACCELERATION_LIMIT = 2.0  # m/s^2 asked for
 TOO_SLOW = 0.95  # of the slowest airspeed asked for: no climb and full throttle
 LEAST_SLOPE = 1e-3  # s/m, of throttle per climb
@@ -58,34 +59,38 @@ class EnergyLoops:
 
     def __init__(self) -> None:
         self._trim = Integral(CLIMB_TRIM_LIMIT)
+        self._handed_over = 0.0  # rad of pitch, of what was flown before; it fades
         self._power = PowerObserver()
         self._throttle: float | None = None
         self.lacking = 0.0
 
     def begin(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, pitch: float, throttle: float) -> None:
-        """Sets integrator and observer so that the first step asks for ``pitch`` [rad] and ``throttle`` [0..1], as far as limits allow."""
-        self._power, self._trim.value, self._throttle = PowerObserver(), 0.0, None
+        """Sets the observer, and what fades, so that the first step asks for ``pitch`` [rad] and ``throttle`` [0..1], within limits."""
+        self._power, self._trim.value, self._throttle, self._handed_over = PowerObserver(), 0.0, None, 0.0
         if wanted.throttle is None:
             asked = self._asked(cycle, wanted)
             level = level_throttle(cycle, self._airspeed(cycle, wanted))
             self._power.unexplained = asked.climb + asked.faster - (throttle - level) / _slope(cycle)
-        self._trim.value = clip(pitch - self._pitch(cycle, self._asked(cycle, wanted).reached), CLIMB_TRIM_LIMIT)
+        self._handed_over = pitch - self._pitch(cycle, self._asked(cycle, wanted).reached)
 
     def step(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> tuple[float, float]:
-        """Pitch [rad] and throttle [0..1] for one cycle."""
+        """Pitch [rad], which the inner loop limits, and throttle [0..1] for one cycle."""
         if self._throttle is not None:
             self._power.step(cycle, self._throttle)
         asked = self._asked(cycle, wanted)
         self.lacking = asked.in_turn - cycle.now.climb
         pitch, error = self._pitch(cycle, asked.reached), (asked.reached - cycle.now.climb) / cycle.speed
-        lowest = max(-cycle.params.pitch_limit, wanted.lowest_pitch)
-        if (error > 0 and pitch < cycle.highest_pitch) or (error < 0 and pitch > lowest):
+        higher = cycle.now.pitch < cycle.highest_pitch
+        lower = pitch > wanted.lowest_pitch and cycle.now.pitch > -cycle.params.pitch_limit
+        settled = abs(self._handed_over) < HANDED_OVER
+        if settled and ((error > 0 and higher) or (error < 0 and lower)):
             self._trim.step(cycle.params.climb_i * error, cycle.dt)
+        self._handed_over -= self._handed_over * min(cycle.dt / FADES, 1.0)
         level = level_throttle(cycle, self._airspeed(cycle, wanted))
         setting = level + _slope(cycle) * (asked.climb + asked.faster - self._power.unexplained)
         free = min(max(setting, 1 - _room(cycle)), 1.0) if cycle.params.throttle_climb else 0.0
         self._throttle = free if wanted.throttle is None else wanted.throttle
-        return max(min(pitch, cycle.highest_pitch), lowest), self._throttle
+        return max(clip(pitch, math.pi / 2), wanted.lowest_pitch), self._throttle
 
     def _asked(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> Power:
         """Within what throttle can reach: full, the airspeed comes before the path; idling or given, the highest airspeed does.
@@ -117,7 +122,7 @@ class EnergyLoops:
         """rad: path angle plus the part of the angle of attack that lies in the vertical plane."""
         path = math.asin(clip(climb / cycle.speed, STEEPEST))
         error = (climb - cycle.now.climb) / cycle.speed
-        return path + cycle.alpha * math.cos(cycle.now.roll) + cycle.params.climb_p * error + self._trim.value
+        return path + cycle.alpha * math.cos(cycle.now.roll) + cycle.params.climb_p * error + self._trim.value + self._handed_over
 
     @staticmethod
     def _airspeed(cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> float:

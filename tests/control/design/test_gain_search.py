@@ -95,10 +95,19 @@ def test_what_it_begins_with_is_stable(design):
     assert all(loop.stable for loop in craft.loops(first))
 
 
+def test_on_a_path_pitch_is_left_to_the_gusts_and_by_stick_it_is_held(design):
+    _, first, params = design
+    assert params.pitch_time > 2 * params.final_pitch_time
+    assert params.final_pitch_p > 0.3 * first.pitch_ff * 0.99 and params.final_pitch_i > 0.99 * first.pitch_ff
+
+
 def test_slow_servos_make_slow_loops():
     quick, slow = (designed(aircraft(lag), begun(aircraft(lag), PARAMS)) for lag in (0.05, 0.15))
     assert slow.roll_time > quick.roll_time
     assert slow.course_p < quick.course_p
+
+
+IN_GLIDE = {"path", "roll", "yaw", "airspeed", "pitch", "final path", "final roll"}
 
 
 def test_a_glider_holds_its_airspeed_with_all_margins():
@@ -106,7 +115,7 @@ def test_a_glider_holds_its_airspeed_with_all_margins():
     craft = replace(aircraft(0.05), powered=False)
     params = designed(craft, begun(craft, glider))
     found = craft.loops(params)
-    assert {loop.name for loop in found} == {"path", "roll", "yaw", "airspeed", "pitch", "final path", "final roll"}
+    assert {loop.name for loop in found} == {*IN_GLIDE, "attitude roll", "attitude pitch"}
     assert all(loop.stable and loop.margins.peak <= PEAK for loop in found)
     assert all(loop.stable for loop in craft.worst(params, seed=7))
 

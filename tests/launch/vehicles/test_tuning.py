@@ -56,8 +56,8 @@ def tuning(request, figures):
 
 def test_every_loop_has_its_margins_at_every_airspeed(tuning):
     in_flight = {"path", "roll", "yaw", "height", "pitch", "airspeed", "airspeed by pitch"}
-    on_final = {"final path", "final roll", "flare", "flare pitch"}
-    assert {loop.name for loop in tuning.loops} == in_flight | on_final
+    firm = {"final path", "final roll", "flare", "flare pitch", "attitude roll", "attitude pitch"}
+    assert {loop.name for loop in tuning.loops} == in_flight | firm
     assert len({loop.airspeed for loop in tuning.loops}) == 3
     for loop in tuning.loops:
         assert loop.stable

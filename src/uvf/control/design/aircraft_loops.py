@@ -69,8 +69,10 @@ def loops(flight: FlightCondition, delays: ActuatorDelays, params: AirParams, po
         yield from _of(longitudinal_loops.gliding_flow(OMEGA, flight, delays, params), longitudinal_loops.AT_FULL_THROTTLE, flight)
     else:
         yield from _of(longitudinal_loops.gliding_flow(OMEGA, flight, delays, params), longitudinal_loops.GLIDING, flight)
+    final = on_final(params)
+    yield from _of(lateral_loops.attitude_flow(OMEGA, flight, delays, final), lateral_loops.ATTITUDE, flight)
+    yield from _of(longitudinal_loops.attitude_flow(OMEGA, flight, delays, final), longitudinal_loops.ATTITUDE, flight)
     if flight.airspeed < FINAL_UP_TO * params.trim_airspeed:
-        final = on_final(params)
         yield from _of(lateral_loops.lateral_flow(OMEGA, flight, delays, final), lateral_loops.ON_FINAL, flight)
         if powered:
             yield from _of(longitudinal_loops.longitudinal_flow(OMEGA, flight, delays, final), longitudinal_loops.ON_FINAL, flight)

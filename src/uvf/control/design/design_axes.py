@@ -41,7 +41,7 @@ LONGITUDINAL = {
     "pitch_p": (1e-4, 2.0),
     "pitch_i": (1e-3, 2.0),
     "climb_p": (0.05, 4.0),
-    "climb_i": (0.01, 1.0),
+    "climb_i": (0.1, 1.0),
     "altitude_p": (0.05, 2.0),
     "airspeed_p": (0.08, 2.0),
     "power_pole": (0.15, 5.0),
@@ -60,9 +60,10 @@ FULL_THROTTLE_STARTS = ({"airspeed_pitch_p": (1.0, 0.3)},)
 LONGITUDINAL_STARTS = ({"pitch_p": (1.0, 3.0)}, {"pitch_i": (1.0, 0.3)}, {"climb_p": (1.0, 0.4)}, {"altitude_p": (1.0, 0.4)})
 """Factors of the gains of a rule of thumb, of which the best are begun with: aircraft differ most in these."""
 STIFF = {"roll_p": 0.15, "roll_i": 0.3, "pitch_p": 0.3, "pitch_i": 1.0}
-"""Least gains of the rate loops, as shares of the feed-forward (those of ``_i``: 1/s): an attitude is to be held by itself, too."""
+"""Least gains of the rate loops, as shares of the feed-forward (those of ``_i``: 1/s), where an attitude is to be held by itself, too."""
+LEARNING = 0.4  # 1/s, of the least pitch_i on a path: an elevator that sits 0.1 rad off costs metres, not tens of them
 STEEP = 0.3  # 1/s, with which a path is approached at least
-SLOWEST, SLOWER = 0.5, 4.0  # s, and of the delays: the longest time constant of an attitude
+SLOWEST, SLOWER = 0.5, 4.0  # s, and of the delays: the longest time constant of an attitude there
 ASIDE, ABOVE, FASTER = 0.5, 0.5, 0.7  # m, m, m/s: errors in turbulence, each worth as much as the surfaces' whole budget
 LASTING_ASIDE = 0.5  # m, of ASIDE's kind: an error that is there in calm, too
 SHORT_OF_POWER = 2.0  # m/s, of the airspeed while the throttle is at its stop, where the height counts, too
@@ -75,6 +76,7 @@ LARGEST = 4  # power of a share: what lies well within its budget is not worth m
 WAY = np.degrees(np.sqrt(2 / np.pi))  # mean size of a normal number, in deg
 
 Limits = tuple[float, float]
+Build = Callable[[FlightCondition, ActuatorDelays, AirParams], SignalFlow]
 
 
 @dataclass(frozen=True)
@@ -101,10 +103,11 @@ class Axis:
 
     gains: Mapping[str, Limits]
     opened: Mapping[str, str]
-    build: Callable[[FlightCondition, ActuatorDelays, AirParams], SignalFlow]
+    build: Build
     wanted: Callable[[SignalFlow], float]
     starts: Sequence[Mapping[str, Sequence[float]]] = ()  # factors of the gains, to begin with; those of one mapping go together
     fastest: float = np.inf  # m/s, up to which it is flown so
+    also: Build | None = None  # built so, they are to have margins at every airspeed, too
 
 
 def axes(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> list[Axis]:
@@ -144,7 +147,8 @@ def _lateral(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
 
     def wanted(flow: SignalFlow) -> float:
         error, way = _aside(air, flow)
-        return _within(firmness * error / (length * ASIDE), firmness * _lasting(flow) / (length * LASTING_ASIDE), way / ROLL_WAY)
+        lasting = _lasting(flow) / (length * LASTING_ASIDE)
+        return _within(firmness * error / (length * ASIDE), firmness * lasting, way / ROLL_WAY)
 
     gains = LATERAL | _inner("roll", aircraft.delays.total("aileron"), params.roll_ff, LATERAL)
     if not lateral_loops.has_rudder(_cruise(aircraft, params)):
@@ -163,8 +167,10 @@ def _longitudinal(aircraft: AircraftLoops, params: AirParams, firmness: float = 
         throttle = np.sqrt(2 / np.pi) * air.rms(flow, "servo_t", "uwq", rate=True)
         return _within(firmness * error / above, air.rms(flow, "airspeed", "uwq") / FASTER, way / PITCH_WAY, throttle / THROTTLE_WAY)
 
-    gains = LONGITUDINAL | _inner("pitch", aircraft.delays.total("elevator"), params.pitch_ff, LONGITUDINAL)
-    return Axis(gains, longitudinal_loops.LOOPS, partial(longitudinal_loops.longitudinal_flow, OMEGA), wanted, LONGITUDINAL_STARTS)
+    learning = {"pitch_i": (max(LEARNING * params.pitch_ff, LONGITUDINAL["pitch_i"][0]), LONGITUDINAL["pitch_i"][1])}
+    return Axis(
+        LONGITUDINAL | learning, longitudinal_loops.LOOPS, partial(longitudinal_loops.longitudinal_flow, OMEGA), wanted, LONGITUDINAL_STARTS
+    )
 
 
 def _gliding(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) -> Axis:
@@ -213,7 +219,10 @@ def _above(air: Gusts, flow: SignalFlow) -> tuple[float, float]:
 
 
 def final_axes(aircraft: AircraftLoops, params: AirParams, firmness: float) -> list[Axis]:
-    """Near the ground, where comfort does not count: as stiff as the margins allow; pitch of a glider is as in cruise."""
+    """Near the ground, where comfort does not count: as stiff as the margins allow; pitch of a glider is as in cruise.
+
+    The same gains hold an attitude that is asked for, up to the highest airspeed.
+    """
     air, share = _air(aircraft, params), FINAL_SHARE * longer(params.trim_airspeed)
     roll, pitch = axes(aircraft, params)[:2]
 
@@ -226,19 +235,19 @@ def final_axes(aircraft: AircraftLoops, params: AirParams, firmness: float) -> l
         error, way = _above(air, flow)
         return _within(firmness * error / (share * ABOVE), way / (FINAL_WAY * PITCH_WAY))
 
+    stiff = LONGITUDINAL | _inner("pitch", aircraft.delays.total("elevator"), params.pitch_ff, LONGITUDINAL)
     lateral = {f"final_{name}": roll.gains[name] for name in FINAL_LATERAL}
-    longitudinal = {f"final_{name}": pitch.gains[name] for name in FINAL_LONGITUDINAL} | FLARE
-    across = _as_final(roll, lateral, beside, params)
-    return [across, _as_final(pitch, longitudinal, above, params)] if aircraft.powered else [across]
+    longitudinal = {f"final_{name}": stiff[name] for name in FINAL_LONGITUDINAL} | FLARE
+    fastest = FINAL_UP_TO * params.trim_airspeed
+    held = partial(lateral_loops.attitude_flow, OMEGA), partial(longitudinal_loops.attitude_flow, OMEGA)
+    across = Axis(lateral, roll.opened, _finally(roll.build), beside, fastest=fastest, also=_finally(held[0]))
+    along = Axis(longitudinal, pitch.opened, _finally(pitch.build), above, fastest=fastest, also=_finally(held[1]))
+    return [across, along] if aircraft.powered else [across]
 
 
-def _as_final(axis: Axis, gains: Mapping[str, Limits], wanted: Callable[[SignalFlow], float], params: AirParams) -> Axis:
-    """The axis of cruise with the ``gains`` that are its own on the final approach."""
-
-    def build(flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
-        return axis.build(flight, delays, on_final(params))
-
-    return Axis(gains, axis.opened, build, wanted, fastest=FINAL_UP_TO * params.trim_airspeed)
+def _finally(build: Build) -> Build:
+    """With the gains that the final approach has of its own."""
+    return lambda flight, delays, params: build(flight, delays, on_final(params))
 
 
 def _inner(axis: str, delay: float, ahead: float, gains: Mapping[str, Limits]) -> dict[str, Limits]:

@@ -5,7 +5,7 @@ The margins count as walls. Searched by Nelder and Mead's simplex over the logar
 where it ended, begun with the best of several rules of thumb.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import msgspec
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from uvf.control.design.aircraft_loops import AircraftLoops
-from uvf.control.design.design_axes import OMEGA, Axis, as_in_cruise, axes, final_axes
+from uvf.control.design.design_axes import OMEGA, Axis, Build, as_in_cruise, axes, final_axes
 from uvf.control.design.flight_condition import ActuatorDelays, FlightCondition
 from uvf.control.design.gain_start import starts
 from uvf.control.design.margins import margins
@@ -28,6 +28,7 @@ FLOOR = (2.5, 15.0, 4.0)  # dB, deg, sensitivity: what is left when the aircraft
 HARDEST = 4  # of such aircraft that are designed for
 ROUNDS, MOST_ROUNDS = 3, 6  # how often others are found that are harder by then; more often only while one is unstable
 UNSTABLE = 1e3  # cost of a pole on the right
+NOTHING = 1e-9  # of a loop's gain: it is not closed
 FIRST = 0.4  # of the simplex, in logarithms
 
 Vector = NDArray[np.float64]
@@ -37,11 +38,16 @@ Vector = NDArray[np.float64]
 class RequiredMargins:
     """Margins that a flight's loops are to keep, with these delays."""
 
+    build: Build
     flight: FlightCondition
     delays: ActuatorDelays
     gain: float = GAIN * RESERVE  # dB
     phase: float = PHASE * RESERVE  # deg
     peak: float = PEAK / RESERVE
+
+    def flow(self, params: AirParams) -> SignalFlow:
+        """The loops of that flight."""
+        return self.build(self.flight, self.delays, params)
 
     def lacking(self, flow: SignalFlow, opened: Iterable[str]) -> float:
         """What the loops lack of their margins, squared and weighted; 0 where they have them."""
@@ -49,7 +55,10 @@ class RequiredMargins:
             return UNSTABLE * abs(poles)
         lack = 0.0
         for at in opened:
-            found = margins(OMEGA, flow.loop(at))
+            loop = flow.loop(at)
+            if np.abs(loop).max() < NOTHING:
+                continue
+            found = margins(OMEGA, loop)
             lack += 10 * max(found.peak - self.peak, 0.0) ** 2
             lack += 0.0 if np.isnan(found.gain) else max(self.gain - abs(found.gain_db), 0.0) ** 2
             lack += 0.0 if np.isnan(found.phase) else max(self.phase - np.degrees(abs(found.phase)), 0.0) ** 2 / 25
@@ -71,12 +80,13 @@ def designed(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
 
 
 def _designed(aircraft: AircraftLoops, params: AirParams, axis: Axis) -> AirParams:
-    walls = [RequiredMargins(flight, aircraft.delays) for flight in aircraft.conditions if flight.airspeed < axis.fastest]
+    flown = [(flight, aircraft.delays) for flight in aircraft.conditions]
+    walls = list(_walls(axis, flown))
     cruise = min(range(len(walls)), key=lambda i: abs(walls[i].flight.airspeed - params.trim_airspeed))
     params = min(starts(params, axis), key=lambda start: _priced(start, axis, walls, cruise))
     for trials in TRIALS[:-1]:
         params = _searched(params, axis, walls, cruise, trials)
-    spread = [RequiredMargins(*off, *FLOOR) for off in aircraft.spread() if off[0].airspeed < axis.fastest]
+    spread = list(_walls(axis, aircraft.spread(), *FLOOR))
     for number in range(MOST_ROUNDS):
         spread.sort(key=lambda wall: -_lacking(wall, axis, params))
         walls, spread = walls + spread[:HARDEST], spread[HARDEST:]
@@ -87,12 +97,20 @@ def _designed(aircraft: AircraftLoops, params: AirParams, axis: Axis) -> AirPara
     return params
 
 
+def _walls(axis: Axis, flown: Iterable[tuple[FlightCondition, ActuatorDelays]], *least: float) -> Iterator[RequiredMargins]:
+    for flight, delays in flown:
+        if flight.airspeed < axis.fastest:
+            yield RequiredMargins(axis.build, flight, delays, *least)
+        if axis.also is not None:
+            yield RequiredMargins(axis.also, flight, delays, *least)
+
+
 def _lacking(wall: RequiredMargins, axis: Axis, params: AirParams) -> float:
-    return wall.lacking(axis.build(wall.flight, wall.delays, params), axis.opened.values())
+    return wall.lacking(wall.flow(params), axis.opened.values())
 
 
 def _priced(params: AirParams, axis: Axis, walls: Sequence[RequiredMargins], cruise: int) -> float:
-    flows = [axis.build(wall.flight, wall.delays, params) for wall in walls]
+    flows = [wall.flow(params) for wall in walls]
     lack = sum(wall.lacking(flow, axis.opened.values()) for wall, flow in zip(walls, flows, strict=True))
     return axis.wanted(flows[cruise]) + lack
 

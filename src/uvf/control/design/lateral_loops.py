@@ -18,6 +18,7 @@ LEAST_DAMPING = 0.1  # 1/s, of rolls
 IN_AIR = {"v": ("v",), "p": ("v", "p", "r"), "r": ("v", "p", "r")}
 LOOPS = {"path": "bank", "roll": "aileron_asked", "yaw": "rudder_asked"}
 ON_FINAL = {"final path": "bank", "final roll": "aileron_asked"}
+ATTITUDE = {"attitude roll": "aileron_asked"}
 """Where each is opened."""
 
 
@@ -25,25 +26,44 @@ def lateral_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays,
     """The closed loops at omega (k,) [rad/s]; angles [rad], ``aside`` [m] to the right of the line, ``off`` [rad] its course."""
     flow = SignalFlow(omega, SIGNALS, INPUTS)
     flow.opens(*LOOPS.values())
+    _airframe(flow, flight, ("psi",))
+    _motion(flow, flight)
+    _guidance(flow, flight, params)
+    _inner(flow, flight, delays, params)
+    return flow
+
+
+def attitude_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
+    """The closed loops with a bank that is given, as by a stick: no path is held."""
+    flow = SignalFlow(omega, SIGNALS, INPUTS)
+    flow.opens(*LOOPS.values())
     _airframe(flow, flight)
+    for free in ("psi", "aside", "off", "path_trim", "bank"):
+        flow.equal(free, {})
+    _inner(flow, flight, delays, params)
+    return flow
+
+
+def _inner(flow: SignalFlow, flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> None:
     flow.actuator("a", "aileron_asked", delays.aileron, delays.dead_time)
     flow.actuator("r", "rudder_asked", delays.rudder, delays.dead_time)
     flow.lag("p_felt", GYRO_TIME, {"p": 1.0})
     flow.lag("r_felt", GYRO_TIME, {"r": 1.0})
-    _guidance(flow, flight, params)
     _roll(flow, flight, params)
     _yaw(flow, flight, params)
-    return flow
 
 
-def _airframe(flow: SignalFlow, flight: FlightCondition) -> None:
+def _airframe(flow: SignalFlow, flight: FlightCondition, also: tuple[str, ...] = ()) -> None:
     model = flight.lateral
-    flow.airframe(model, ("v", "p", "r", "phi", "psi"), IN_AIR)
+    flow.airframe(model, ("v", "p", "r", "phi", *also), IN_AIR)
+    force = {by: model.slope("v", by) for by in ("v", *model.inputs)}
+    flow.lag("side_force", FORCE_TIME, force | {"gust_v": -force["v"]})
+
+
+def _motion(flow: SignalFlow, flight: FlightCondition) -> None:
     along, across = flight.airspeed * math.cos(flight.alpha), -flight.airspeed * math.sin(flight.alpha)
     flow.integral("aside", {"psi": along, "phi": across, "v": 1.0})
     flow.equal("off", {name: value / flight.ground_speed for name, value in (("psi", along), ("phi", across), ("v", 1.0))})
-    force = {by: model.slope("v", by) for by in ("v", *model.inputs)}
-    flow.lag("side_force", FORCE_TIME, force | {"gust_v": -force["v"]})
 
 
 def _guidance(flow: SignalFlow, flight: FlightCondition, params: AirParams) -> None:

@@ -20,6 +20,7 @@ LOOPS = {"height": "pitch", "pitch": "elevator_asked", "airspeed": "throttle_ask
 GLIDING = {"airspeed": "pitch", "pitch": "elevator_asked"}
 AT_FULL_THROTTLE = {"airspeed by pitch": "pitch"}
 ON_FINAL = {"flare": "pitch", "flare pitch": "elevator_asked"}
+ATTITUDE = {"attitude pitch": "elevator_asked"}
 """Where each is opened."""
 
 
@@ -46,6 +47,17 @@ def gliding_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays,
     _path(flow, flight, params, {"airspeed_felt": made + exchanged, "unexplained": 1.0})
     _observer(flow, flight, params, {"airspeed_felt": made})
     flow.equal("throttle_asked", {})
+    flow.actuator("t", None, delays.throttle, delays.dead_time)
+    return flow
+
+
+def attitude_flow(omega: Floats, flight: FlightCondition, delays: ActuatorDelays, params: AirParams) -> SignalFlow:
+    """The closed loops with pitch and throttle that are given, as by sticks."""
+    flow = SignalFlow(omega, SIGNALS, INPUTS)
+    flow.opens(*LOOPS.values())
+    _inner(flow, flight, delays, params)
+    for free in ("h", "climb_asked", "climb_trim", "pitch", "kinetic", "unexplained", "throttle_asked"):
+        flow.equal(free, {})
     flow.actuator("t", None, delays.throttle, delays.dead_time)
     return flow
 

@@ -105,10 +105,18 @@ def test_in_a_storm_that_leaves_no_way_back_it_does_not_stay_out_until_it_is_ove
     return flight
 
 
+def test_an_elevator_that_sits_ten_degrees_off_is_found_out_before_it_is_at_its_stop():
+    """Half of its way: turns are banked for by what is left of it."""
+    flight = Trouble(faults=[("elevator", "bias", 5.0, 40.0, 0.17)], wind=(17.0, 0.0, 0.0))
+    flight.run(50.0)
+    assert not flight.told("surface at its stop")
+    assert np.abs(flight.positions()[:, 2] - 60.0).max() < 10.0 and not flight.crashed
+
+
 @shows("air", "saturation")
 def test_an_elevator_at_its_stop_is_asked_for_less_in_strong_wind_too():
     """Asked for more, the aircraft sinks through its turns, and is on the ground within ten seconds."""
-    flight = Trouble(faults=[("elevator", "bias", 5.0, 40.0, 0.17)], wind=(17.0, 0.0, 0.0))
+    flight = Trouble(faults=[("elevator", "bias", 5.0, 40.0, 0.205)], wind=(18.0, 0.0, 0.0))
     flight.run(50.0)
     began, ended = flight.told("surface at its stop"), flight.told("surfaces free again")
     assert began and began[0] < 40.0
