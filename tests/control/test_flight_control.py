@@ -127,7 +127,6 @@ def test_an_attitude_is_held_with_the_throttle_that_is_given():
 
 
 GENTLE = msgspec.structs.replace(PARAMS, pitch_time=2.0, final_pitch_time=0.25, pitch_p=0.05, final_pitch_p=0.3)
-
 GENTLE_FOR_LONG = msgspec.structs.replace(GENTLE, pitch_i=0.0)
 
 

@@ -60,13 +60,13 @@ class PitchLoop:
         balance = params.elev_zero_alpha + params.elev_per_alpha * self._alpha_of(cycle, math.cos(bank) + cycle.speed * rate / GRAVITY)
         moving = math.sqrt(cycle.scale) * params.pitch_ff * rate + cycle.scale * params.pitch_p * error
         elevator = self._trim.step(balance - moving, -cycle.scale, params.pitch_i * error, cycle.dt)
-        self._beside += (elevator - self._said(cycle) - self._beside) * min(cycle.dt / LEARNT, 1.0)
+        self._beside += (elevator - self._balancing(cycle) - self._beside) * min(cycle.dt / LEARNT, 1.0)
         spent = elevator < -AT_STOP * self._limit
         self._share = min(max(self._share + (-GIVES if spent else TAKES) * cycle.dt, TURN_SHARE[0]), TURN_SHARE[1])
         return elevator
 
     @staticmethod
-    def _said(cycle: Cycle) -> float:
+    def _balancing(cycle: Cycle) -> float:
         """Elevator [rad] that balances lift and pitch rate of now, by the parameters."""
         params = cycle.params
         damped = math.sqrt(cycle.scale) * params.pitch_ff * cycle.now.q

@@ -239,9 +239,9 @@ def final_axes(aircraft: AircraftLoops, params: AirParams, firmness: float) -> l
     lateral = {f"final_{name}": roll.gains[name] for name in FINAL_LATERAL}
     longitudinal = {f"final_{name}": stiff[name] for name in FINAL_LONGITUDINAL} | FLARE
     fastest = FINAL_UP_TO * params.trim_airspeed
-    held = partial(lateral_loops.attitude_flow, OMEGA), partial(longitudinal_loops.attitude_flow, OMEGA)
-    across = Axis(lateral, roll.opened, _finally(roll.build), beside, fastest=fastest, also=_finally(held[0]))
-    along = Axis(longitudinal, pitch.opened, _finally(pitch.build), above, fastest=fastest, also=_finally(held[1]))
+    banked, pitched = partial(lateral_loops.attitude_flow, OMEGA), partial(longitudinal_loops.attitude_flow, OMEGA)
+    across = Axis(lateral, roll.opened, _finally(roll.build), beside, fastest=fastest, also=_finally(banked))
+    along = Axis(longitudinal, pitch.opened, _finally(pitch.build), above, fastest=fastest, also=_finally(pitched))
     return [across, along] if aircraft.powered else [across]
 
 

@@ -80,8 +80,7 @@ def designed(aircraft: AircraftLoops, params: AirParams, firmness: float = 1.0) 
 
 
 def _designed(aircraft: AircraftLoops, params: AirParams, axis: Axis) -> AirParams:
-    flown = [(flight, aircraft.delays) for flight in aircraft.conditions]
-    walls = list(_walls(axis, flown))
+    walls = list(_walls(axis, ((flight, aircraft.delays) for flight in aircraft.conditions)))
     cruise = min(range(len(walls)), key=lambda i: abs(walls[i].flight.airspeed - params.trim_airspeed))
     params = min(starts(params, axis), key=lambda start: _priced(start, axis, walls, cruise))
     for trials in TRIALS[:-1]:
@@ -98,6 +97,7 @@ def _designed(aircraft: AircraftLoops, params: AirParams, axis: Axis) -> AirPara
 
 
 def _walls(axis: Axis, flown: Iterable[tuple[FlightCondition, ActuatorDelays]], *least: float) -> Iterator[RequiredMargins]:
+    """Of each flight first that of the axis itself: by that in cruise errors are priced."""
     for flight, delays in flown:
         if flight.airspeed < axis.fastest:
             yield RequiredMargins(axis.build, flight, delays, *least)
